@@ -158,7 +158,8 @@ std::size_t size_of(const py::object& given) {
 }
 
 constexpr std::array kOrients = {std::pair{"keep", Orient::Keep},
-                                 std::pair{"fix-direction-only", Orient::FixDirectionOnly}};
+                                 std::pair{"fix-direction-only", Orient::FixDirectionOnly},
+                                 std::pair{"fix-cavities", Orient::FixCavities}};
 
 /// What all surfaces and offsets have in common.
 template <class Options>

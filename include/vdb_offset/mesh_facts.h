@@ -44,6 +44,7 @@ struct SeamFacts {
 enum class Orient {
   Keep,              ///< Where its faces point.
   FixDirectionOnly,  ///< Out of the solid that it encloses, wherever its faces point. They stay as they are.
+  FixCavities,  ///< The same, and what lies directly inside of a solid is a cavity in it, and never a solid itself.
 };
 
 /// What a mesh is made of, counted on its polygons after welding.
@@ -66,8 +67,11 @@ struct VDB_OFFSET_API MeshFacts {
   std::size_t unsettled_conflicts = 0;    ///< Left over: on surfaces with one side only.
   std::size_t closed_components = 0;  ///< Components in which all edges have two faces that agree about the outside.
   std::size_t inside_out_components = 0;  ///< Closed ones that face the wrong way as a whole (see orientation.h).
-  Vec3d lower{0.0}, upper{0.0};           ///< Bounding box of the vertices in use, world units.
-  double diagonal = 0;                    ///< Of that box.
+  /// Closed ones that lie directly inside of a solid and point outward like it: solids, or cavities that face the wrong
+  /// way. With Orient::FixCavities they count as the latter above.
+  std::size_t enclosed_components = 0;
+  Vec3d lower{0.0}, upper{0.0};  ///< Bounding box of the vertices in use, world units.
+  double diagonal = 0;           ///< Of that box.
   double area = 0;
   double median_edge = 0;        ///< Median edge length of the triangulated surface.
   std::size_t sliver_edges = 0;  ///< Shorter than kSliver of that.

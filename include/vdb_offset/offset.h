@@ -33,17 +33,20 @@ VDB_OFFSET_API OffsetStatistics plan_several(PolygonView mesh, std::span<const D
                                              const OffsetOptions& options, std::size_t layers = 0);
 
 /// Makes room between a mesh and another one: parts of the mesh that are nearer to the other than `clearance` (world
-/// units, above 0) go inward until they are that far away, including faces between vertices; the rest stays. If the
+/// units, above 0) go inward until they are that far away, including faces between vertices; the rest stays. A flat
+/// face between sharp edges goes as a whole, so that it stays flat, and corners go to where the moved faces and those
+/// that stay meet, as with Corners::Miter. If the
 /// other mesh is a solid, parts inside of it are too near by their depth, whichever way its faces point; if it is not,
 /// each side of it is outside.
 ///
-/// Each round is an offset in which each vertex goes inward by what its faces lack: the nearest point of a face that is
-/// too near is a weighted mean of its corners, and each corner goes farther by its weight. How much the gap grows tells
-/// how far to go in the next round. Rounds end when nothing is too near, or the gap no longer grows: where the mesh is
-/// too thin, or inward does not lead away from the other mesh. The best round is the result; its `distances` are those
-/// that were needed, and its `statistics.fit` tells the gap that is left.
+/// Each round is an offset in which flat faces, and the vertices of curved ones, go inward by what they lack: the
+/// nearest point of a triangle that is too near is a weighted mean of its corners, and each corner goes farther by its
+/// weight. Where several faces meet, those go for which that helps. How much the gap grows tells how far to go in the
+/// next round. Rounds end when nothing is too near, or the gap no longer grows: where the mesh is too thin, or inward
+/// does not lead away from the other mesh. The best round is the result; its `distances` are those that were needed,
+/// and its `statistics.fit` tells the gap that is left.
 ///
-/// Of the options, `distance`, `obstacles`, `clearance`, `metric` and those of shells have no effect. \throw
+/// Of the options, `distance`, `corners`, `obstacles`, `clearance`, `metric` and those of shells have no effect. \throw
 /// InvalidInput as offset(), and for a clearance that is not above 0 or another mesh without faces.
 VDB_OFFSET_API OffsetResult fit(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options);
 

@@ -92,6 +92,12 @@ struct FaceError {
   std::size_t samples = 0;  ///< Points that were measured: 40,000, or fewer on a mesh of few triangles.
   double mean = 0, quantile_99 = 0, worst = 0;
   double at_distance = 0;  ///< Share of the area that is off by 1 % or less.
+  /// Share of the area that is too far away by more than 1 % beside sharp corners where more planes meet than one point
+  /// can be on, and the most by which any of it is. 0 where less than 1 % of the area is too far away.
+  double beyond = 0, most_beyond = 0;
+  /// By how much more than `mean` points are too far away on average: beside miters, where it is the planes of their
+  /// faces that are at the distance.
+  double farther = 0;
   /// Shares of the mean, all 0 if that is 1 % or less, or not known. Of faces with a vertex that falls short, whatever
   /// the distance where none of these moves at all (`stuck`). Of others: what a face that looks the other way takes, as
   /// in walls and gaps that are narrower than two distances; the rest, if the face has a vertex at a sharp corner, or

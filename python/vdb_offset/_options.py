@@ -72,8 +72,9 @@ OPTIONS: Dict[str, Option] = {
     "weld": Option(Union[Literal["auto", "exact", "none"], float, str], "auto",
                    'which vertices are one: "exact": those at equal positions; "auto": also on borders that are one\n'
                    'but for rounding; "none"; or a number: those that are no farther apart, world units', float),
-    "orient": Option(Literal["keep", "fix-direction-only"], "keep",
-                     'outward is where faces point; "fix-direction-only": it is out of what closed parts enclose'),
+    "orient": Option(Literal["keep", "fix-direction-only", "fix-cavities"], "keep",
+                     'outward is where faces point; "fix-direction-only": it is out of what closed parts enclose; '
+                     '"fix-cavities": also, closed parts in others are cavities'),
     "solver": Option(Literal["closest", "eikonal"], "closest",
                      'how the field is extended: "closest" (exact), or "eikonal" (first order, the paper\'s)'),
     "texture": Option(Optional[np.ndarray], None,

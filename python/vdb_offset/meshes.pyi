@@ -24,7 +24,7 @@ def offset_mesh(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
     texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
     voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
     unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,

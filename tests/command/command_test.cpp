@@ -54,9 +54,24 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
   CHECK(shell("check reversed.obj fixed.obj -d 0.1").code == 3);
   CHECK(shell("check reversed.obj keep.obj -d 0.1 --strict").code == 0);
   CHECK_THAT(shell("sphere.obj out.obj -d 0.1").out, !Catch::Contains("inward"));
+  // A cavity whose faces point outward grows by a distance above 0, unless it is told to be one.
+  Polygons hollow = scene::icosphere(1, 3), cavity = scene::icosphere(0.5, 3);
+  const auto first = static_cast<std::uint32_t>(hollow.positions.size());
+  hollow.positions.insert(hollow.positions.end(), cavity.positions.begin(), cavity.positions.end());
+  for (std::size_t f = 0; f < cavity.face_count(); ++f) {
+    const auto face = cavity.view().face(f);
+    hollow.add_face({first + face[0], first + face[1], first + face[2]});
+  }
+  io::write_mesh(shell.file("hollow.obj"), hollow.view());
+  CHECK_THAT(shell("hollow.obj kept.obj -d 0.1").out, Catch::Contains("--orient fix-cavities"));
+  CHECK(least_radius("kept.obj") > 0.55);
+  const Run shrunk = shell("hollow.obj shrunk.obj -d 0.1 --orient fix-cavities");
+  CHECK_THAT(shrunk.out, Catch::Contains("1 of 2 closed components point the wrong way, and are taken as turned"));
+  CHECK(least_radius("shrunk.obj") < 0.41);
+  CHECK(shell("check hollow.obj shrunk.obj -d 0.1 --orient fix-cavities --strict").code == 0);
   const Run wrong = shell("sphere.obj out2.obj -d 0.1 --orient outward");
   CHECK(wrong.code == 1);
-  CHECK_THAT(wrong.err, Catch::Contains("'keep' or 'fix-direction-only'"));
+  CHECK_THAT(wrong.err, Catch::Contains("'keep', 'fix-direction-only' or 'fix-cavities'"));
 }
 
 namespace {

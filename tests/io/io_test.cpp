@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "support/bytes.h"
+#include "support/edits.h"
 #include "support/folder.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
@@ -19,22 +20,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<Vec3d> shifted(std::vector<Vec3d> positions, const Vec3d& by) {
-  for (Vec3d& p : positions) p += by;
-  return positions;
-}
-
 /// Writes the bytes to a file of that name, reads it, moves every vertex and gives what is then written.
 std::string moved(const Folder& folder, const std::string& name, const std::string& bytes, const Vec3d& by) {
   const io::MeshFile file = io::read_mesh(folder.write(name, bytes));
   io::write_mesh(folder.file("out_" + name), file, shifted(file.polygons.positions, by));
   return slurp(folder.file("out_" + name));
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
 }
 
 const std::string kObj =

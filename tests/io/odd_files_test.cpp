@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/bytes.h"
+#include "support/edits.h"
 #include "support/folder.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
@@ -24,19 +25,8 @@ namespace {
 
 using CornerList = std::vector<std::uint32_t>;
 
-std::vector<Vec3d> shifted(std::vector<Vec3d> positions, const Vec3d& by) {
-  for (Vec3d& p : positions) p += by;
-  return positions;
-}
-
 std::string moved(const io::MeshFile& file, const Vec3d& by) {
   return io::patched_bytes(file, shifted(file.polygons.positions, by));
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
 }
 
 io::MeshFile parse(Format format, const std::string& bytes) {
@@ -110,7 +100,7 @@ TEST_CASE("ply: strips of triangles are faces, and stay strips", "[io]") {
   expected.insert(expected.end(), {0, 1, 2, 0, 3, 1});
   CHECK(file.polygons.corners == expected);
   CHECK(io::patched_bytes(file, file.polygons.positions) == text);
-  CHECK(moved(file, {0, 0, 0.5}) == replaced(text, kPoints, "0 0 0.5\n1 0 0.5\n0 1 0.5\n0 0 1.5\n"));
+  CHECK(moved(file, {0, 0, 0.5}) == replaced_everywhere(text, kPoints, "0 0 0.5\n1 0 0.5\n0 1 0.5\n0 0 1.5\n"));
   for (const bool big : {false, true})
     for (const std::string index : {"int", "uint"}) {
       const std::string bytes = binary_strips(big, index);
@@ -126,11 +116,12 @@ TEST_CASE("ply: strips of triangles are faces, and stay strips", "[io]") {
 
 TEST_CASE("ply: strips go to other formats as triangles, with what their vertices have", "[io]") {
   const Folder folder;
-  const std::string text = replaced(replaced(strips_header("ascii", "int", 1), "property float z\n",
-                                             "property float z\nproperty uchar red\nproperty uchar green\n"
-                                             "property uchar blue\n"),
-                                    "list int", "list uchar") +
-                           replaced(kPoints, "\n", " 255 0 51\n") + "6 0 1 2 3 0 1\n";
+  const std::string text =
+      replaced_everywhere(replaced_everywhere(strips_header("ascii", "int", 1), "property float z\n",
+                                              "property float z\nproperty uchar red\nproperty uchar green\n"
+                                              "property uchar blue\n"),
+                          "list int", "list uchar") +
+      replaced_everywhere(kPoints, "\n", " 255 0 51\n") + "6 0 1 2 3 0 1\n";
   const io::MeshFile file = io::read_mesh(folder.write("a.ply", text));
   const io::WriteResult written = io::write_mesh(folder.file("a.obj"), file, file.polygons.positions);
   CHECK_THAT(slurp(folder.file("a.obj")), Catch::Contains("v 0 0 0 1 0 0.2") && Catch::EndsWith("f 1 4 2\n"));
@@ -149,8 +140,8 @@ TEST_CASE("ply: strips that are wrong are refused, and beside faces they are no 
   check_refused(Format::Ply, strip("-3 0 1 2\n"), "a list length from 0 on, got -3");
   check_refused(Format::Ply, strip("4 0 1 2\n"), "expected a vertex index or -1");
   check_refused(Format::Ply, strip("2 0 1\n"), "at least one face");
-  const std::string both = replaced(strips_header("ascii", "int", 1), "end_header\n",
-                                    "element face 1\nproperty list uchar int vertex_index\nend_header\n") +
+  const std::string both = replaced_everywhere(strips_header("ascii", "int", 1), "end_header\n",
+                                               "element face 1\nproperty list uchar int vertex_index\nend_header\n") +
                            kPoints + "3 0 1 2\n3 1 2 3\n";
   const io::MeshFile file = parse(Format::Ply, both);
   CHECK(file.polygons.corners == CornerList{1, 2, 3});
@@ -161,8 +152,8 @@ TEST_CASE("ply: faces of fewer than three corners are refused by name", "[io]") 
   for (const int corners : {-1, 0, 1, 2}) {
     const std::string header = "ply\nformat FORMAT 1.0\nelement vertex 4\n" + kXyz +
                                "element face 2\nproperty list int int vertex_indices\nend_header\n";
-    std::string text = replaced(header, "FORMAT", "ascii") + kPoints + fmt::format("3 0 1 2\n{} ", corners),
-                binary = replaced(header, "FORMAT", "binary_little_endian");
+    std::string text = replaced_everywhere(header, "FORMAT", "ascii") + kPoints + fmt::format("3 0 1 2\n{} ", corners),
+                binary = replaced_everywhere(header, "FORMAT", "binary_little_endian");
     for (int i = 0; i < 12; ++i) binary += raw(static_cast<float>(i));
     for (const std::int32_t i : {3, 0, 1, 2, corners}) binary += raw(i);
     for (std::int32_t k = 0; k < corners; ++k) text += fmt::format("{} ", k), binary += raw(k);
@@ -175,10 +166,10 @@ TEST_CASE("ply: faces of fewer than three corners are refused by name", "[io]") 
 TEST_CASE("ply: a header whose lines end in carriage returns, before a text or binary numbers", "[io]") {
   const Folder folder;
   for (const bool binary : {false, true}) {
-    std::string bytes = replaced("ply\nformat " + std::string(binary ? "binary_little_endian" : "ascii") +
-                                     " 1.0\ncomment old\nelement vertex 3\n" + kXyz +
-                                     "element face 1\nproperty list uchar uchar vertex_index\nend_header\n",
-                                 "\n", "\r");
+    std::string bytes = replaced_everywhere("ply\nformat " + std::string(binary ? "binary_little_endian" : "ascii") +
+                                                " 1.0\ncomment old\nelement vertex 3\n" + kXyz +
+                                                "element face 1\nproperty list uchar uchar vertex_index\nend_header\n",
+                                            "\n", "\r");
     if (binary) {
       // The first byte of the body looks like a line feed.
       for (const float x : {1.1938e-42f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) bytes += raw(x);
@@ -229,7 +220,8 @@ TEST_CASE("shells: new rows of a text end as its lines do", "[io][shell]") {
                           "3 0 1 2\n";
   for (const auto& [format, text] :
        {std::pair{Format::Ply, ply}, {Format::Off, "OFF\n4 1 0\n" + kPoints + "3 0 1 2\n"}}) {
-    const io::MeshFile shell = shell_there_and_back(folder, parse(format, replaced(text, "\n", "\r\n")), lost);
+    const io::MeshFile shell =
+        shell_there_and_back(folder, parse(format, replaced_everywhere(text, "\n", "\r\n")), lost);
     CHECK(std::ranges::count(shell.text(), '\n') == std::ranges::count(shell.text(), '\r'));
   }
 }
@@ -243,12 +235,12 @@ TEST_CASE("io: texts whose lines end in carriage returns are read and kept", "[i
        "solid old\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
        "endfacet\nendsolid\n"}};
   for (const auto& [format, text] : texts) {
-    const std::string bytes = replaced(text, "\n", "\r");
+    const std::string bytes = replaced_everywhere(text, "\n", "\r");
     const io::MeshFile file = io::read_mesh(folder.write(std::string("a.") + io::name(format), bytes)),
                        other = parse(format, text);
     CHECK(file.polygons.corners == CornerList{0, 1, 2});
     CHECK(io::patched_bytes(file, file.polygons.positions) == bytes);
-    CHECK(moved(file, {0.5, 0, 0}) == replaced(moved(other, {0.5, 0, 0}), "\n", "\r"));
+    CHECK(moved(file, {0.5, 0, 0}) == replaced_everywhere(moved(other, {0.5, 0, 0}), "\n", "\r"));
     std::string lost;
     const io::MeshFile shell = shell_there_and_back(folder, file, lost);
     CHECK(shell.has_carriage_returns);

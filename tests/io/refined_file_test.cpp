@@ -9,6 +9,7 @@
 #include <random>
 
 #include "support/bytes.h"
+#include "support/edits.h"
 #include "support/folder.h"
 #include "support/splitter.h"
 #include "vdb_offset/error.h"
@@ -23,12 +24,6 @@ namespace {
 
 io::MeshFile parse(Format format, const std::string& bytes) {
   return io::parse_mesh(std::string("a.") + io::name(format), format, bytes);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
 }
 
 /// The text of a file of which edges are split.
@@ -65,7 +60,7 @@ TEST_CASE("refined OBJ: a seam stays one, and what is continuous over an edge st
   CHECK_THAT(seam, Catch::Contains("vn 0 1 0\nvn 0 0.70710677 0.70710677\ng left"));
   CHECK_THAT(seam, Catch::Contains("f 5/6/3 1/1/1 2/2/1 # lower\nf 5/6/3 2/2/1 3/3/2\n"));
   CHECK_THAT(seam, Catch::Contains("f 5/7/3 3/3/2 4/5/1\nf 5/7/3 4/5/1 1/4/1\n"));
-  const std::string whole = split_text(Format::Obj, replaced(kCharts, "1/4/1", "1/1/1"), {{0, 2}});
+  const std::string whole = split_text(Format::Obj, replaced_everywhere(kCharts, "1/4/1", "1/1/1"), {{0, 2}});
   CHECK_THAT(whole, Catch::Contains("vt 0.5 0.2\nvt 0.5 0.5\nvn"));
 }
 
@@ -91,19 +86,22 @@ TEST_CASE("refined OBJ: line ends, continued lines and numbers behind coordinate
   const std::string expected =
       "v 0 0 0 1 0 0\nv 2 0 0 0.5 1 0\nv 2 2 0 1 0 0\nv 1 0 0 0.75 0.5 0\nf 4 2 3\nf 4 3 1\nf 4 1 3\nf 4 3 2\n";
   CHECK(split_text(Format::Obj, coloured, {{0, 1}}) == expected);
-  CHECK(split_text(Format::Obj, replaced(coloured, "\n", "\r\n"), {{0, 1}}) == replaced(expected, "\n", "\r\n"));
+  CHECK(split_text(Format::Obj, replaced_everywhere(coloured, "\n", "\r\n"), {{0, 1}}) ==
+        replaced_everywhere(expected, "\n", "\r\n"));
   // A backslash in the last line joins no new ones to it.
   for (const std::string end : {"", "\\\n", "\\\r\n"})
     CHECK_THAT(split_text(Format::Obj, "f 1 2 3\nv 0 0 0\nv 2 0 0\nv 2 2 0 " + end, {{0, 1}}),
                Catch::EndsWith("\nv 1 0 0\n"));
   const std::string bytes =
-      replaced(replaced(replaced(coloured, " 1 0 0", " 255 0 0"), "0.5 1 0", "0 9 0"), "2 0 0 255", "2 0 0");
+      replaced_everywhere(replaced_everywhere(replaced_everywhere(coloured, " 1 0 0", " 255 0 0"), "0.5 1 0", "0 9 0"),
+                          "2 0 0 255", "2 0 0");
   CHECK_THAT(split_text(Format::Obj, bytes, {{0, 1}}), Catch::Contains("v 1 0 0 128 5 0\n"));
 
-  const io::MeshFile old_mac = parse(Format::Obj, replaced(replaced(coloured, "\\\n", ""), "\n", "\r"));
+  const io::MeshFile old_mac =
+      parse(Format::Obj, replaced_everywhere(replaced_everywhere(coloured, "\\\n", ""), "\n", "\r"));
   const io::RefinedFile refined = io::refine_file(old_mac, Splitter(old_mac).edge(0, 1).run());
   CHECK(refined.file.has_carriage_returns);
-  CHECK(io::patched_bytes(refined.file, refined.file.polygons.positions) == replaced(expected, "\n", "\r"));
+  CHECK(io::patched_bytes(refined.file, refined.file.polygons.positions) == replaced_everywhere(expected, "\n", "\r"));
 }
 
 TEST_CASE("refined OBJ: the point inside of a face has the shares of three corners", "[io]") {
@@ -163,12 +161,13 @@ const std::string kPlyText = ply_header("ascii") +
 
 TEST_CASE("refined PLY: rows of text", "[io]") {
   const std::string expected =
-      replaced(replaced(ply_header("ascii"), "vertex 4", "vertex 5"), "face 2", "face 3") +
+      replaced_everywhere(replaced_everywhere(ply_header("ascii"), "vertex 4", "vertex 5"), "face 2", "face 3") +
       "0 0 0  0 0 1  10 7 0.1\n2 0 0  0 0 1  13 8 0.2\n2 2 0  0 1 0  10 9 0.1\n0 2 0  0 1 0  10 6 nan\n"
       "1 0 0 0 0 1 12 7 0.15000000000000002\n3 4 1 2 6 0.5 0 1 0 1 1 5\n3 4 2 0 6 0.5 0 1 1 0 0 5\n"
       "3 0  2 3 6 0 0 1 1 0 0.5 4\n0 1\n";
   CHECK(split_text(Format::Ply, kPlyText, {{0, 1}}) == expected);
-  CHECK(split_text(Format::Ply, replaced(kPlyText, "\n", "\r\n"), {{0, 1}}) == replaced(expected, "\n", "\r\n"));
+  CHECK(split_text(Format::Ply, replaced_everywhere(kPlyText, "\n", "\r\n"), {{0, 1}}) ==
+        replaced_everywhere(expected, "\n", "\r\n"));
   // Normals are of length 1; a number that is none gives way to that of the nearest vertex, the first of two.
   CHECK_THAT(split_text(Format::Ply, kPlyText, {{0, 2}, {2, 3}}),
              Catch::Contains("1 1 0 0 0.70710677 0.70710677 10 9 0.1\n1 2 0 0 1 0 10 9 0.1\n"));
@@ -197,7 +196,7 @@ std::string binary_ply(bool big) {
 }
 
 TEST_CASE("refined PLY: binary rows say what rows of text do", "[io]") {
-  const io::MeshFile text = parse(Format::Ply, replaced(kPlyText, "nan", "0.1"));
+  const io::MeshFile text = parse(Format::Ply, replaced_everywhere(kPlyText, "nan", "0.1"));
   const Refinement refinement = Splitter(text).edge(0, 1).edge(0, 2).run();
   const io::MeshFile expected = io::refine_file(text, refinement).file;
   const io::Attributes wanted = io::read_attributes(expected);
@@ -250,7 +249,7 @@ TEST_CASE("refined PLY: rows wherever they stand, and lists of vertices", "[io]"
       "element vertex 4\nproperty list uchar int tags\nproperty float x\nproperty float y\n"
       "property float z\nend_header\n";
   CHECK(split_text(Format::Ply, header + "3 0 1 2 3\n0 2 3\n\n 2 8 9 0 0 0 0 2\n0 0 1 7 2 2 0\n0 0 2 0", {{0, 1}}) ==
-        replaced(replaced(header, "face 2", "face 3"), "vertex 4", "vertex 5") +
+        replaced_everywhere(replaced_everywhere(header, "face 2", "face 3"), "vertex 4", "vertex 5") +
             "3 4 1 2\n3 4 2 0 3\n0 2 3\n\n 2 8 9 0 0 0 0 2\n0 0 1 7 2 2 0\n0 0 2 0\n2 8 9 1 0 0");
 }
 
@@ -265,7 +264,7 @@ TEST_CASE("refined PLY: strips become faces", "[io]") {
                              points + "\n9 4 0 1 2 3\n";
   const io::MeshFile source = parse(Format::Ply, strips);
   const io::RefinedFile refined = io::refine_file(source, Splitter(source).edge(0, 1).run());
-  CHECK(refined.file.text() == replaced(head, "vertex 4", "vertex 5") +
+  CHECK(refined.file.text() == replaced_everywhere(head, "vertex 4", "vertex 5") +
                                    "element face 3\nproperty list int int vertex_indices\nend_header\n" + points +
                                    "\n1 0 0 4\n3 4 1 2\n3 4 2 0\n3 2 1 3\n");
   CHECK(refined.lost == std::vector<std::string>{"strips of triangles (the triangles are there, as faces)",
@@ -288,7 +287,7 @@ TEST_CASE("refined OFF: text", "[io]") {
   const std::string few = "OFF\r\n3 1\r\n0 0 0\r\n2 0 0\r\n0 2 0\r\n3 0 1 2\r\n";
   CHECK(split_text(Format::Off, few, {{0, 1}}) ==
         "OFF\r\n4 2 0\r\n0 0 0\r\n2 0 0\r\n0 2 0\r\n1 0 0\r\n3 3 1 2\r\n3 3 2 0\r\n");
-  CHECK_THAT(split_text(Format::Off, replaced(off, "3 0 2 3", "3  0  2 3 0.5"), {{0, 1}}),
+  CHECK_THAT(split_text(Format::Off, replaced_everywhere(off, "3 0 2 3", "3  0  2 3 0.5"), {{0, 1}}),
              Catch::EndsWith("# red\n\n3  0  2 3 0.5\n"));
 }
 
@@ -335,7 +334,7 @@ TEST_CASE("refined STL: facets of a text keep their normals, solids and remarks"
       "  facet normal 0 0 1\n    outer loop\n      vertex 1 0 0\n      vertex 2 0 0\n"
       "      vertex 2 2 0\n    endloop\n  endfacet";
   const std::string second =
-      replaced(replaced(facet, "vertex 2 2 0", "vertex 0.0 0 0"), "vertex 2 0 0", "vertex 2 2 0");
+      replaced_everywhere(replaced_everywhere(facet, "vertex 2 2 0", "vertex 0.0 0 0"), "vertex 2 0 0", "vertex 2 2 0");
   CHECK(refined.file.text() == "solid one two\n" + facet + "\n" + second + kStl.substr(kStl.find(" remark")));
   CHECK(refined.vertex == std::vector<std::uint32_t>{6, 1, 2, 6, 2, 0, 3, 4, 5});
   CHECK(io::wall_names(refined.file).of_face == std::vector<std::uint32_t>{0, 0, 1});
@@ -392,7 +391,7 @@ TEST_CASE("refined file: it can be written in place with other positions", "[io]
   std::vector<Vec3d> positions = refined.polygons.positions;
   for (Vec3d& p : positions) p[2] += 1;
   CHECK(io::patched_bytes(refined, positions) ==
-        replaced(kQuad, " 0\n", " 1\n") + "v 1 0 1\nf 5 2 3\nf 5 3 4\nf 5 4 1\n");
+        replaced_everywhere(kQuad, " 0\n", " 1\n") + "v 1 0 1\nf 5 2 3\nf 5 3 4\nf 5 4 1\n");
 }
 
 TEST_CASE("refined file: a refinement of something else is refused", "[io]") {

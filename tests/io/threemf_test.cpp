@@ -12,6 +12,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/edits.h"
 #include "support/folder.h"
 #include "support/splitter.h"
 #include "support/threemf_packages.h"
@@ -31,18 +32,8 @@ namespace {
 
 io::MeshFile parsed(const std::string& bytes) { return io::parse_mesh("a.3mf", Format::ThreeMf, bytes); }
 
-std::vector<Vec3d> shifted(std::vector<Vec3d> positions, const Vec3d& by) {
-  for (Vec3d& p : positions) p += by;
-  return positions;
-}
-
 std::string moved(const io::MeshFile& file, const Vec3d& by) {
   return io::patched_bytes(file, shifted(file.polygons.positions, by));
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  REQUIRE(text.find(from) != std::string::npos);
-  return text.replace(text.find(from), from.size(), to);
 }
 
 std::string entry_of(const std::string& archive, const std::string& name) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "support/oracles.h"
+#include "support/solids.h"
 #include "vdb_offset/check.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/offset.h"
@@ -46,6 +49,66 @@ double gap_of(const Polygons& mesh, const std::vector<Vec3d>& positions, const P
   for (const TriangleCorners& a : triangles(mesh, positions))
     for (const TriangleCorners& b : of_other) least = std::min(least, distance_between(a, b));
   return least;
+}
+
+/// The corner points of cells in x and in y, and which of them are of a plus.
+constexpr std::array<double, 6> kCellEnds = {-4, 0, 6, 12, 18, 22};
+constexpr bool is_in_plus(int i, int j) { return i >= 1 && i <= 3 && j >= 1 && j <= 3 && (i == 2 || j == 2); }
+
+/// Whether a point is above a corner of a cell of the plus.
+bool is_corner_of_plus(const Vec3d& p) {
+  const auto index = [&](int k) {
+    return static_cast<int>(std::find(kCellEnds.begin(), kCellEnds.end(), p[k]) - kCellEnds.begin());
+  };
+  const int i = index(0), j = index(1);
+  return is_in_plus(i, j) || is_in_plus(i - 1, j) || is_in_plus(i, j - 1) || is_in_plus(i - 1, j - 1);
+}
+
+/// A block of those cells from z = bottom to top for which is_high(i, j) holds; the others end at z = floor, or are
+/// left out where that is the bottom. Quads.
+template <class IsHigh>
+Polygons relief(double bottom, double floor, double top, IsHigh&& is_high) {
+  Polygons mesh;
+  std::map<std::array<double, 3>, std::uint32_t> at;
+  const auto vertex = [&](int i, int j, double z) {
+    const std::array<double, 3> p = {kCellEnds[static_cast<std::size_t>(i)], kCellEnds[static_cast<std::size_t>(j)], z};
+    const auto [place, is_new] = at.try_emplace(p, static_cast<std::uint32_t>(mesh.positions.size()));
+    if (is_new) mesh.positions.emplace_back(p[0], p[1], p[2]);
+    return place->second;
+  };
+  const auto height = [&](int i, int j) {
+    return i < 0 || j < 0 || i > 4 || j > 4 ? bottom : is_high(i, j) ? top : floor;
+  };
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j) {
+      const double z = height(i, j);
+      if (z == bottom) continue;
+      for (const double end : {z, bottom}) {
+        const std::uint32_t a = vertex(i, j, end), b = vertex(i + 1, j, end), c = vertex(i + 1, j + 1, end),
+                            d = vertex(i, j + 1, end);
+        if (end == bottom) mesh.add_face({d, c, b, a});
+        else mesh.add_face({a, b, c, d});
+      }
+      // Walls to lower neighbours, seen from outside: along each side of the cell, counter-clockwise.
+      const std::array<std::array<int, 4>, 4> sides = {
+          {{i, j, i + 1, j}, {i + 1, j, i + 1, j + 1}, {i + 1, j + 1, i, j + 1}, {i, j + 1, i, j}}};
+      const std::array<double, 4> beyond = {height(i, j - 1), height(i + 1, j), height(i, j + 1), height(i - 1, j)};
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (beyond[k] >= z) continue;
+        const auto& [x0, y0, x1, y1] = sides[k];
+        mesh.add_face({vertex(x0, y0, beyond[k]), vertex(x1, y1, beyond[k]), vertex(x1, y1, z), vertex(x0, y0, z)});
+      }
+    }
+  return mesh;
+}
+
+double volume_of(const Polygons& mesh, const std::vector<Vec3d>& at) {
+  double six = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.view().face(f);
+    for (std::size_t k = 2; k < face.size(); ++k) six += at[face[0]].dot(at[face[k - 1]].cross(at[face[k]]));
+  }
+  return six / 6;
 }
 
 void require_valid(const Polygons& mesh, const OffsetResult& result) {
@@ -126,6 +189,59 @@ TEST_CASE("fit: faces give way between their vertices", "[fit]") {
   for (std::size_t v = 0; v < cube.positions.size(); ++v)
     if (cube.positions[v][2] < 0) CHECK(result.positions[v] == cube.positions[v]);
   require_valid(cube, result);
+}
+
+TEST_CASE("fit: a pocket moves its walls and its floor, and all stay flat", "[fit]") {
+  const Polygons pocket = relief(-3, 0, 5, [](int i, int j) { return !is_in_plus(i, j); });
+  // The peg has no play; it ends in the pocket, flush with it, and beyond.
+  for (const double end : {3.0, 5.0, 7.0}) {
+    const Polygons peg = relief(0, 0, end, is_in_plus);
+    const OffsetResult result = fit(pocket.view(), peg.view(), 0.2, {});
+    CAPTURE(end);
+    CHECK(result.statistics.fit->near == 0);
+    CHECK(result.statistics.fit->gap == Approx(0.2).epsilon(1e-6));
+    require_valid(pocket, result);
+    for (std::size_t v = 0; v < pocket.positions.size(); ++v) {
+      const Vec3d &from = pocket.positions[v], &to = result.positions[v];
+      const bool is_at_pocket = from[2] > -3 && is_corner_of_plus(from);
+      CHECK(to[2] == Approx(from[2] == 0 ? -0.2 : from[2]).margin(1e-6));
+      for (const int k : {0, 1}) CHECK(std::abs(to[k] - from[k]) == Approx(is_at_pocket ? 0.2 : 0).margin(1e-6));
+    }
+    CHECK(volume_of(pocket, pocket.positions) - volume_of(pocket, result.positions) ==
+          Approx(194.56 * 5.2 - 180 * 5).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("fit: the peg of a pocket gives way on its walls and its end", "[fit]") {
+  const Polygons pocket = relief(-3, 0, 5, [](int i, int j) { return !is_in_plus(i, j); }),
+                 peg = relief(0, 0, 7, is_in_plus);
+  const OffsetResult result = fit(peg.view(), pocket.view(), 0.2, {});
+  CHECK(result.statistics.fit->near == 0);
+  require_valid(peg, result);
+  for (std::size_t v = 0; v < peg.positions.size(); ++v) {
+    CHECK(result.positions[v][2] == Approx(peg.positions[v][2] == 0 ? 0.2 : 7).margin(1e-6));
+    for (const int k : {0, 1})
+      CHECK(std::abs(result.positions[v][k] - peg.positions[v][k]) == Approx(0.2).margin(1e-6));
+  }
+}
+
+TEST_CASE("fit: a groove moves its round walls and its floor", "[fit]") {
+  constexpr std::array<std::array<double, 2>, 8> kWithGroove = {
+      {{1, 0}, {6, 0}, {6, 3}, {4, 3}, {4, 1}, {3, 1}, {3, 3}, {1, 3}}};
+  constexpr std::array<std::array<double, 2>, 4> kRing = {{{3, 1}, {4, 1}, {4, 4}, {3, 4}}};
+  const Polygons groove = test::lathe(kWithGroove, 64), ring = test::lathe(kRing, 64);
+  const OffsetResult result = fit(groove.view(), ring.view(), 0.1, {});
+  CHECK(result.statistics.fit->near == 0);
+  require_valid(groove, result);
+  // Facets of both stand opposite each other.
+  const double at_corner = 0.1 / std::cos(std::numbers::pi / 64);
+  for (std::size_t v = 0; v < groove.positions.size(); ++v) {
+    const Vec3d &from = groove.positions[v], &to = result.positions[v];
+    const double radius = std::hypot(from[0], from[1]);
+    const double farther = std::abs(radius - 4) < 1e-9 ? at_corner : std::abs(radius - 3) < 1e-9 ? -at_corner : 0;
+    CHECK(std::hypot(to[0], to[1]) == Approx(radius + farther).epsilon(1e-5));
+    CHECK(to[2] == Approx(from[2] == 1 ? 0.9 : from[2]).margin(1e-5));
+  }
 }
 
 TEST_CASE("fit: nothing moves where there is room, and what has none is told", "[fit]") {

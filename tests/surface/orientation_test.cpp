@@ -112,6 +112,21 @@ TEST_CASE("orientation: nested components are judged by how deep they lie", "[or
   CHECK(inside_out(shells({4, -3, -2, -1})) == 1);
 }
 
+TEST_CASE("orientation: what lies in a solid and points outward is counted, and is a cavity if that is asked for",
+          "[orientation]") {
+  const auto enclosed = [](const Polygons& mesh) { return build_surface(mesh.view(), {}).facts.enclosed_components; };
+  CHECK(enclosed(shells({3, -2, 1})) == 0);
+  CHECK(enclosed(shells({3, 2})) == 1);
+  CHECK(enclosed(shells({4, 3, 2})) == 1);  // the innermost one lies in two others
+  CHECK(enclosed(shells({-3, 2})) == 0);    // turned as a whole
+  const double solid = volume(build_surface(shells({4, -3, 2, -1}).view(), {}));
+  for (const auto& radii : {std::initializer_list<double>{4, 3, 2, 1}, {-4, 3, -2, 1}, {4, -3, 2, 1}, {4, -3, 2, -1}}) {
+    const Surface right = build_surface(shells(radii).view(), {}, Orient::FixCavities);
+    CHECK(volume(right) == Approx(solid));
+    CHECK(right.facts.enclosed_components == 0);
+  }
+}
+
 TEST_CASE("orientation: turned as solids, nested components enclose what they should", "[orientation]") {
   const double solid = volume(build_surface(shells({3, -2, 1}).view(), {}));
   for (const auto& radii : {std::initializer_list<double>{-3, 2, -1}, {3, -2, -1}, {-3, -2, 1}}) {

@@ -107,12 +107,14 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
                 made.weld_text = text;
                 made.weld = parse_weld(text);
               });
-  line.option("--orient", "MODE",
-              "Which side of SOURCE is outward, as it was for the offset: 'keep' or 'fix-direction-only' [keep]",
-              [&made](const std::string& text) {
-                made.orient_text = text;
-                made.orient = parse_orient(text);
-              });
+  line.option(
+      "--orient", "MODE",
+      "Which side of SOURCE is outward, as it was for the offset: 'keep', 'fix-direction-only' or 'fix-cavities' "
+      "[keep]",
+      [&made](const std::string& text) {
+        made.orient_text = text;
+        made.orient = parse_orient(text);
+      });
   line.option("--flatten", "TOL",
               "How far straight segments were from the curved ones of a drawing, as it was for the offset [0.001%]",
               [&made](const std::string& text) { made.flatten = parse_flatten(text); });

@@ -48,6 +48,7 @@ void settle_fit_of_scene(Job& job) {
                                     {"--dry-run", request.dry_run}})
     if (given) throw InvalidOption(fmt::format("{}: expected a scene without a fit, or a --distance", name));
   job.to_fit = job.source.scene->to_fit.view();
+  job.options.corners = Corners::Miter;  // as fits have
   job.asked.push_back({"fit", {}, {}});
 }
 
@@ -82,8 +83,8 @@ void settle_surroundings(Job& job) {
   if (source.to_fit) {
     if (source.obstacles.face_count() > 0 || options.obstacles.face_count() > 0 || job.shell)
       throw InvalidOption("--fit: expected a scene without an obstacle or a shell");
-    if (options.corners == Corners::Miter) throw InvalidOption("--fit: expected a scene without mitred corners");
     job.to_fit = source.to_fit->view();
+    options.corners = Corners::Miter;  // as fits have
     options.clearance = clearance_of(job);
   }
   if (source.obstacles.face_count() == 0) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -78,14 +79,16 @@ double lack_of_room_at(const PlaneCurves& curves, std::span<const Vec2d> positio
                       error);
 }
 
-/// Sums up which part of all errors comes of which cause. \param errors of the samples, below 0 if not measured
+/// Sums up which part of all errors comes of which cause. \param errors of the samples; none: not measured
 void find_causes(const PlaneCurves& curves, std::span<const Vec2d> positions, std::span<const SegmentSample> samples,
-                 std::span<const double> errors, std::span<const VertexState> states, FaceError& result) {
+                 std::span<const std::optional<PointError>> errors, std::span<const VertexState> states,
+                 FaceError& result) {
   const Polyline& line = curves.line();
   const std::vector<std::uint8_t> at_corner = vertices_on_creases(line);
   double sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (errors[i] < 0) continue;
+    if (!errors[i]) continue;
+    const double error = std::abs(errors[i]->off);
     bool is_short = false, is_stuck = true, is_round = false;
     for (const auto v : line.segments[samples[i].segment]) {
       is_round |= (at_corner[v] || line.triangles_around(v).size() > 2) &&
@@ -94,14 +97,14 @@ void find_causes(const PlaneCurves& curves, std::span<const Vec2d> positions, st
       is_short = true;
       is_stuck &= (positions[v] - curves.source[v]).length() <= kStuck * std::abs(curves.distances[v]);
     }
-    sum += errors[i];
+    sum += error;
     if (is_short) {
-      (is_stuck ? result.stuck : result.held_back) += errors[i];
+      (is_stuck ? result.stuck : result.held_back) += error;
       continue;
     }
-    const double no_room = lack_of_room_at(curves, positions, samples[i], errors[i]);
+    const double no_room = lack_of_room_at(curves, positions, samples[i], error);
     result.no_room += no_room;
-    (is_round ? result.corners : result.coarse) += errors[i] - no_room;
+    (is_round ? result.corners : result.coarse) += error - no_room;
   }
   for (double* const cause : {&result.held_back, &result.stuck, &result.no_room, &result.corners, &result.coarse})
     *cause /= sum;
@@ -114,7 +117,7 @@ FaceError measure_segments(const PlaneCurves& curves, std::span<const Vec2d> pos
   const Polyline& line = curves.line();
   VDB_OFFSET_ASSERT(positions.size() == line.vertices.size());
   const std::vector<SegmentSample> samples = spread_over(line, positions);
-  std::vector<double> errors(samples.size(), -1);
+  std::vector<std::optional<PointError>> errors(samples.size());
   for_each_index(
       samples.size(),
       [&](std::size_t i) {
@@ -122,14 +125,10 @@ FaceError measure_segments(const PlaneCurves& curves, std::span<const Vec2d> pos
         const auto [x, asked] = point_of(curves, positions, samples[i]);
         const double wanted = std::abs(asked);
         if (!(wanted > kLeastMeasured * curves.distances.scale())) return;
-        double off = curves.query(x, s).distance - wanted;
-        if (off > 0) off = std::min(off, std::abs(over_line(curves, s, x) - asked));
-        errors[i] = std::abs(off) / wanted;
+        errors[i] = point_error(curves.query(x, s).distance - wanted, over_line(curves, s, x) - asked, wanted);
       },
       64);
-  std::vector<double> measured = errors;
-  std::erase(measured, -1);
-  FaceError result = sum_up_errors(std::move(measured));
+  FaceError result = sum_up_errors(errors);
   if (result.mean > kWorthTelling) find_causes(curves, positions, samples, errors, states, result);
   return result;
 }

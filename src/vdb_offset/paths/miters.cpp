@@ -29,8 +29,8 @@ constexpr int kMostStepsBack = 64;
 // Planes that are closer to each other, as the length between their normals, and have different distances of their own
 // meet nowhere near the vertex. Reasoned: the miter would be ten times as long as the distances differ.
 constexpr double kTooAlike = 0.1;
-// Share by which exact distances may differ that ought to be the same. Reasoned: far below the promised 1e-6, far above
-// rounding.
+// Share of a miter's length by which exact distances may differ that ought to be the same. Reasoned: far below the
+// promised 1e-6, far above rounding.
 constexpr double kSameMiterDistance = 1e-9;
 
 /// The planes around a vertex, of the exact surface where that is known.
@@ -263,7 +263,9 @@ bool MiterFinder<Query>::is_proven(Miter& miter, const UnitMiter& unit, const Ve
     return closest.distance >= asked - exact_->deflection() &&
            exact_->is_own(miter.vertex, end, distance < 0 ? -asked : asked, closest.triangle, closest.point) &&
            (!obstacles_ || ObstacleGuard(*obstacles_, start, distance < 0 ? -1 : 1).stop(start, end) == end);
-  const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) * (1 - kSameMiterDistance) ||
+  // On the plane of a face that stays, both distances are 0 but for rounding.
+  const double rounding = kSameMiterDistance * miter.displacement.length();
+  const bool is_own = closest.distance >= distance_from_fan(shape, miter.vertex, end) - rounding ||
                       is_detail(shape, miter.vertex, closest, asked) || goes_on(shape, miter.vertex, closest);
   miter.gives_way = !is_own;
   return (is_own || is_way_free(query_, miter.vertex, end, closest, asked)) &&
@@ -319,7 +321,9 @@ void MiterFinder<Query>::prove(std::span<const UnitMiter> some, const Asked& fro
     miter.closest = closest[i].triangle;
     const bool is_proven_now = miter.displacement != Vec3d(0.0) && is_proven(miter, some[i], ends[i], closest[i], from);
     if ((some[i].is_exact || some[i].is_own) && is_proven_now && miter.distance < asked) {
-      if (miter.distance < asked * (1 - kReachedTolerance)) miter.nearer = miter.distance;
+      // On the plane of a face that stays it is 0, which would say that nothing is nearer.
+      if (miter.distance < asked * (1 - kReachedTolerance))
+        miter.nearer = std::max(miter.distance, std::numeric_limits<double>::min());
       miter.distance = asked;
     }
     if (miter.state != VertexState::Cut && std::abs(miter.distance - asked) <= kReachedTolerance * asked)

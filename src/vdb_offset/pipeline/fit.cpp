@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/pipeline/field_stage.h"
+#include "vdb_offset/pipeline/fit_parts.h"
 #include "vdb_offset/validity/clearance.h"
 
 namespace vdb_offset {
@@ -25,15 +27,38 @@ constexpr std::size_t kPatience = 4;
 // The gap that is aimed at, and the gap that counts as far enough, relative to the clearance: above it by the first,
 // and below it by no more than the second, so that rounding does not decide.
 constexpr double kBeyond = 3e-7, kFarEnough = 1e-6;
-// The least gain of a vertex, as a share of what it goes farther inward, that the next round reckons with: what a
-// vertex goes at once is at most seven times what it lacks. Not measured.
+// The least gain of a part, as a share of what it goes farther inward, that the next round reckons with: what a
+// part goes at once is at most seven times what it lacks. Not measured.
 constexpr double kLeastFitGain = 0.15;
+// A part that gains less than this share of what another one at the same place does stays for that. Not measured.
+constexpr double kLeastOfBest = 0.5;
+// The share of a corner below which a point of a triangle is on the edge across from it. Reasoned: far above rounding.
+constexpr double kOnEdge = 1e-6;
+// How far inside of a triangle what touches its rim is told, as a share of the way to its middle. Not measured.
+constexpr double kJustInside = 1e-3;
+// Share of the clearance below which a gap has no direction but for rounding. Not measured.
+constexpr double kTouching = 1e-6;
+
+/// The surface in its local frame, with its normals.
+Surface placed(Surface surface) {
+  to_local_frame(surface, frame_voxel_size(surface.facts));
+  return surface;
+}
+
+/// Where a triangle is nearest to the other mesh.
+struct Near {
+  double gap;   ///< The least distance, but no more than the limit that was asked for.
+  Vec3d share;  ///< Barycentric coordinates of the triangle's nearest point.
+};
 
 /// The other mesh, and distances from it.
 class Other {
  public:
   Other(PolygonView mesh, double clearance)
-      : surface_(placed(mesh)), query_(surface_), obstacles_{query_, clearance}, finder_(obstacles_) {}
+      : surface_(placed(build_surface(mesh, {}, Orient::FixDirectionOnly))),
+        query_(surface_),
+        obstacles_{query_, clearance},
+        finder_(obstacles_) {}
 
   Other(const Other&) = delete;
   Other& operator=(const Other&) = delete;
@@ -48,10 +73,17 @@ class Other {
     return is_solid() && surface_.pseudonormal(triangle, feature).dot(x - point) < 0 ? -distance : distance;
   }
 
-  struct Near {
-    double gap;   ///< The least distance, but no more than the limit that was asked for.
-    Vec3d share;  ///< Barycentric coordinates of the triangle's nearest point.
-  };
+  bool touches(double gap) const { return std::abs(gap) <= kTouching * obstacles_.clearance; }
+  /// How much a point gains of what it goes along a unit vector, -1 to 1; where it touches the mesh, which has no
+  /// outside, all.
+  double gain_along(const Vec3d& world, const Vec3d& along) const {
+    const Vec3d x = world - surface_.origin;
+    const auto [distance, triangle, feature, tied, point] = query_(x, 0);
+    const Vec3d normal = surface_.pseudonormal(triangle, feature);
+    if (touches(distance)) return is_solid() ? along.dot(normal) / normal.length() : 1;
+    return along.dot(is_solid() && normal.dot(x - point) < 0 ? point - x : x - point) / distance;
+  }
+
   /// The nearest point of a triangle, or its corner that is deepest inside. `at_corners` are the gaps of its corners.
   Near near(const TriangleCorners& world, const std::array<double, 3>& at_corners, double limit) const {
     const TriangleCorners local = {world[0] - surface_.origin, world[1] - surface_.origin, world[2] - surface_.origin};
@@ -69,12 +101,6 @@ class Other {
   }
 
  private:
-  static Surface placed(PolygonView mesh) {
-    Surface surface = build_surface(mesh, {}, Orient::FixDirectionOnly);
-    to_local_frame(surface, frame_voxel_size(surface.facts));
-    return surface;
-  }
-
   /// The barycentric coordinates of a point.
   static Vec3d shares(const TriangleCorners& t, const Vec3d& x) {
     const Vec3d n = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -97,12 +123,14 @@ class Other {
 class Fitting {
  public:
   Fitting(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options)
-      : mesh_(mesh),
+      : triangles_(split_polygons(mesh)),
+        mesh_{mesh.positions, mesh.corners, mesh.face_begin, triangles_},
         clearance_(clearance),
         options_(options),
-        surface_(build_surface(mesh, options.weld, options.orient)),
+        surface_(placed(build_surface(mesh_, options.weld, options.orient))),
         other_(other, clearance),
-        depth_(surface_.vertices.size(), 0.0),
+        parts_(surface_, options.only),
+        depth_(parts_.count(), 0.0),
         stuck_(surface_.vertices.size(), 0),
         near_(surface_.triangles.size()),
         told_(surface_.triangles.size(), 0.0),
@@ -118,7 +146,7 @@ class Fitting {
     options_.clearance = 0;
     options_.metric = {};
     options_.off_source = options_.inner_skin_last = false;
-    mark_what_stays();
+    options_.corners = Corners::Miter;
   }
 
   OffsetResult run() {
@@ -150,18 +178,23 @@ class Fitting {
   }
 
  private:
-  void mark_what_stays() {
-    for (std::size_t t = 0; t < surface_.triangles.size() && !options_.only.empty(); ++t)
-      if (!options_.only[surface_.face[t]])
-        for (const auto v : surface_.triangles[t]) stuck_[v] = 1;
-  }
-
   OffsetResult offset_by_depths() const {
-    std::vector<double> each(mesh_.positions.size(), 0.0);
+    std::vector<double> each(mesh_.positions.size(), 0.0), at_corner(mesh_.corners.size(), 0.0);
+    std::vector<double> sum(surface_.vertices.size(), 0.0), count(surface_.vertices.size(), 0.0);
+    for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (parts_.of(t)[k] == kNone) continue;
+        const auto w = surface_.triangles[t][k];
+        const double depth = depth_[parts_.of(t)[k]];
+        sum[w] += depth;
+        ++count[w];
+        for (std::uint32_t c = mesh_.face_begin[surface_.face[t]]; c < mesh_.face_begin[surface_.face[t] + 1]; ++c)
+          if (surface_.welded[mesh_.corners[c]] == w) at_corner[c] = 0 - depth;
+      }
     for (std::size_t v = 0; v < each.size(); ++v)
-      if (surface_.welded[v] != kNone) each[v] = 0 - depth_[surface_.welded[v]];
+      if (const auto w = surface_.welded[v]; w != kNone && count[w] > 0) each[v] = 0 - sum[w] / count[w];
     OffsetOptions options = options_;
-    options.distance = Distances(std::move(each));
+    options.distance = Distances(std::move(each), std::move(at_corner));
     return offset(mesh_, options);
   }
 
@@ -178,7 +211,7 @@ class Fitting {
     std::vector<double> gaps(positions_.size());
     for_each_index(
         gaps.size(), [&](std::size_t w) { gaps[w] = other_.gap_at(positions_[w]); }, 64);
-    std::vector<Other::Near> now(near_.size());
+    std::vector<Near> now(near_.size());
     for_each_index(
         now.size(),
         [&](std::size_t t) {
@@ -186,8 +219,9 @@ class Fitting {
           now[t] = other_.near({positions_[a], positions_[b], positions_[c]}, {gaps[a], gaps[b], gaps[c]}, wanted_);
         },
         64);
-    for (std::size_t t = 0; t < now.size(); ++t) gain_[t] = gain_of(now[t].gap - before[t], told_[t]);
-    for (std::size_t w = 0; w < gaps.size(); ++w) vertex_gain_[w] = gain_of(gaps[w] - vertex_gap_[w], vertex_told_[w]);
+    for (std::size_t t = 0; t < now.size(); ++t) measure_gain(now[t].gap - before[t], told_[t], gain_[t]);
+    for (std::size_t w = 0; w < gaps.size(); ++w)
+      measure_gain(gaps[w] - vertex_gap_[w], vertex_told_[w], vertex_gain_[w]);
     near_ = std::move(now);
     vertex_gap_ = std::move(gaps);
     short_ = 0;
@@ -198,50 +232,109 @@ class Fitting {
     }
   }
 
-  static double gain_of(double gained, double told) {
-    return told > 0 ? std::clamp(gained / told, kLeastFitGain, 1.0) : 1;
+  /// Sets the share of what was told that has been gained, if that was more than next to nothing.
+  void measure_gain(double gained, double told, double& gain) const {
+    if (told > kLeastOfBest * kLeastFitGain * wanted_) gain = std::clamp(gained / told, kLeastFitGain, 1.0);
   }
 
-  /// Lets each vertex go farther inward by what it lacks itself, then the corners of faces by what the faces' nearest
-  /// points still lack, in the sense of least squares. Returns false if no vertex can go farther.
+  /// Lets parts go farther inward by what their vertices lack, then by what the nearest points of faces still lack, in
+  /// the sense of least squares. Returns false if none can go farther.
   bool deepen() {
-    std::vector<double> own(depth_.size(), 0.0);
-    for (std::size_t w = 0; w < own.size(); ++w)
-      if (!stuck_[w] && vertex_gap_[w] < wanted_) own[w] = (wanted_ - vertex_gap_[w]) / vertex_gain_[w];
-    vertex_told_ = own;
-    for (std::size_t t = 0; t < near_.size(); ++t)
-      if (near_[t].gap < wanted_) add_for_face(t, own);
-    for (std::size_t w = 0; w < depth_.size(); ++w) depth_[w] += vertex_told_[w];
-    for (std::size_t t = 0; t < near_.size(); ++t) told_[t] = sum_at(t, vertex_told_);
-    return std::any_of(vertex_told_.begin(), vertex_told_.end(), [](double more) { return more > 0; });
+    more_.assign(depth_.size(), 0.0);
+    vertex_told_.assign(vertex_told_.size(), 0.0);
+    for (std::uint32_t w = 0; w < vertex_gap_.size(); ++w)
+      if (!stuck_[w] && vertex_gap_[w] < wanted_) add_for_vertex(w);
+    const std::vector<double> of_vertices = more_;
+    for (std::uint32_t t = 0; t < near_.size(); ++t)
+      if (near_[t].gap < wanted_) add_for_face(t, of_vertices);
+    for (std::size_t p = 0; p < depth_.size(); ++p) depth_[p] += more_[p];
+    for (std::uint32_t t = 0; t < near_.size(); ++t) told_[t] = sum_at(t, more_);
+    return std::any_of(more_.begin(), more_.end(), [](double more) { return more > 0; });
   }
 
-  /// How much farther the nearest point of a triangle goes if the vertices go this much farther.
-  double sum_at(std::size_t t, const std::vector<double>& more) const {
+  /// How much farther the nearest point of a triangle goes if the parts go this much farther.
+  double sum_at(std::uint32_t t, const std::vector<double>& more) const {
     double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += near_[t].share[static_cast<int>(k)] * more[surface_.triangles[t][k]];
+    for (std::size_t k = 0; k < 3; ++k)
+      if (parts_.of(t)[k] != kNone) sum += near_[t].share[static_cast<int>(k)] * more[parts_.of(t)[k]];
     return sum;
   }
 
-  void add_for_face(std::size_t t, const std::vector<double>& own) {
-    Vec3d free = near_[t].share;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (stuck_[surface_.triangles[t][k]]) free[static_cast<int>(k)] = 0;
-    const double squared = free.lengthSqr(), lack = (wanted_ - near_[t].gap) / gain_[t] - sum_at(t, own);
-    if (!(squared > 0 && lack > 0)) return;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto w = surface_.triangles[t][k];
-      vertex_told_[w] = std::max(vertex_told_[w], own[w] + lack * free[static_cast<int>(k)] / squared);
+  /// How much a point of a triangle gains of what the triangle goes inward. At its rim that is told from just inside of
+  /// the triangle, as what touches there has several sides.
+  double expected_gain(std::uint32_t t, const Vec3d& point, bool touches) const {
+    const auto& [a, b, c] = surface_.triangles[t];
+    const Vec3d middle = (positions_[a] + positions_[b] + positions_[c]) / 3;
+    return other_.gain_along(touches ? point + (middle - point) * kJustInside : point, -surface_.triangle_normals[t]);
+  }
+
+  /// How far each side of the surface at a point has to go, as a multiple of what the point lacks: as far as that
+  /// helps, and no side that helps far less than another. So what is beside a wall that gives way stays. A side is
+  /// named by its part at the vertex.
+  /// \param around the triangles that the point is on, which share the vertex
+  std::map<std::uint32_t, double> sides_at(const Vec3d& point, double gap, std::uint32_t vertex,
+                                           std::span<const std::uint32_t> around) const {
+    std::map<std::uint32_t, double> sides;
+    const bool touches = other_.touches(gap);
+    double best = kLeastFitGain;
+    for (const auto t : around) {
+      const std::uint32_t side = parts_.at(t, vertex);
+      if (side == kNone) continue;
+      double& most = sides.try_emplace(side, -1.0).first->second;
+      most = std::max(most, expected_gain(t, point, touches));
+      best = std::max(best, most);
+    }
+    std::erase_if(sides, [&](const auto& each) { return each.second < kLeastOfBest * best; });
+    double squared = 0;
+    for (const auto& [side, gain] : sides) squared += gain * gain;
+    // What touches several sides of the other mesh has to leave each of them.
+    for (auto& [side, gain] : sides) gain = touches ? 1 : gain / std::sqrt(squared);
+    return sides;
+  }
+
+  /// Flat faces go for their triangles, which know better where they lack.
+  void add_for_vertex(std::uint32_t w) {
+    const double lack = (wanted_ - vertex_gap_[w]) / vertex_gain_[w];
+    for (const auto& [part, share] : sides_at(positions_[w], vertex_gap_[w], w, surface_.triangles_around(w))) {
+      if (parts_.is_flat(part)) continue;
+      more_[part] = lack * share;
+      vertex_told_[w] = lack;
     }
   }
 
-  /// Marks vertices that did not get as far as they were to go: they are not asked to go farther.
-  void find_stuck(const OffsetResult& result) {
-    for (std::size_t w = 0; w < depth_.size(); ++w) {
-      const auto v = surface_.representative[w];
-      if (depth_[w] == 0 || result.states[v] == VertexState::Reached) continue;
-      stuck_[w] = 1;
+  void add_for_face(std::uint32_t t, const std::vector<double>& of_vertices) {
+    const Near& near = near_[t];
+    const auto& corners = surface_.triangles[t];
+    Vec3d point(0.0);
+    std::map<std::uint32_t, double> shares;  // of each part that can go farther
+    std::vector<std::uint32_t> around{t};
+    std::uint32_t vertex = kNone;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double share = near.share[static_cast<int>(k)];
+      const std::uint32_t part = parts_.of(t)[k];
+      point += positions_[corners[k]] * share;
+      if (share < kOnEdge) around.push_back(surface_.next_around_edge[3 * t + (k + 1) % 3] / 3);
+      else vertex = corners[k];
+      if (part != kNone && !stuck_[corners[k]]) shares[part] += share;
     }
+    if (around.size() == 3) {
+      if (!parts_.is_flat(parts_.at(t, vertex))) return;  // the vertex has gone for it
+      around.assign(surface_.triangles_around(vertex).begin(), surface_.triangles_around(vertex).end());
+    }
+    const auto sides = sides_at(point, near.gap, vertex, around);
+    const auto side = sides.find(parts_.at(t, vertex));
+    double squared = 0;
+    for (const auto& [part, share] : shares) squared += share * share;
+    const double lack = (wanted_ - near.gap) / gain_[t] - sum_at(t, of_vertices);
+    if (side == sides.end() || !(squared > 0 && lack > 0)) return;
+    for (const auto& [part, share] : shares)
+      more_[part] = std::max(more_[part], of_vertices[part] + lack * side->second * share / squared);
+  }
+
+  /// Marks vertices that did not get as far as they were to go: nothing goes farther for them.
+  void find_stuck(const OffsetResult& result) {
+    for (std::size_t w = 0; w < stuck_.size(); ++w)
+      if (falls_short(result.states[surface_.representative[w]])) stuck_[w] = 1;
   }
 
   void finish(OffsetResult& best, FitFacts& facts) const {
@@ -271,9 +364,9 @@ class Fitting {
 
   /// Counts the components of the other mesh that lie in the result's solid, by one vertex of each.
   std::size_t count_enclosed(std::span<const Vec3d> positions) const {
-    Surface result = build_surface({positions, mesh_.corners, mesh_.face_begin}, options_.weld, options_.orient);
+    const Surface result = placed(
+        build_surface({positions, mesh_.corners, mesh_.face_begin, mesh_.triangles}, options_.weld, options_.orient));
     if (!result.facts.closed() || !result.facts.oriented()) return 0;
-    to_local_frame(result, frame_voxel_size(result.facts));
     const ClosestQuery query(result);
     const Surface& other = other_.surface();
     std::vector<std::uint8_t> seen(other.facts.components, 0);
@@ -287,14 +380,16 @@ class Fitting {
     return enclosed;
   }
 
+  std::vector<std::array<std::uint32_t, 3>> triangles_;  // of the mesh's faces, at its own positions
   PolygonView mesh_;
   double clearance_, wanted_ = 0;
   OffsetOptions options_;
   Surface surface_;
   Other other_;
-  std::vector<double> depth_;        // of each vertex: the distance that it goes inward
-  std::vector<std::uint8_t> stuck_;  // of each vertex: 1 if it cannot go any farther, or is not to
-  std::vector<Other::Near> near_;    // of each triangle
+  FitParts parts_;
+  std::vector<double> depth_, more_;  // of each part: the distance that it goes inward, and what is added in a round
+  std::vector<std::uint8_t> stuck_;   // of each vertex: 1 if it cannot go any farther
+  std::vector<Near> near_;            // of each triangle
   std::vector<double> told_,
       gain_;  // of each triangle: how far its nearest point was to go, and the share it got of that
   std::vector<double> vertex_gap_, vertex_told_, vertex_gain_;  // of each vertex: its gap, and these two

@@ -175,45 +175,79 @@ class Nesting {
   RayTree rays_;
 };
 
-/// Of each component: whether it faces the wrong way as a whole. `around` has the solids that each lies inside of.
-std::vector<std::uint8_t> judge(const std::vector<Solid>& solids,
-                                const std::vector<std::vector<std::uint32_t>>& around) {
+/// How components lie in each other.
+struct Judgement {
+  std::vector<std::uint8_t> wrong;  // of each component: whether it faces the wrong way as a whole
+  std::size_t enclosed = 0;         // components that face outward where a cavity would face inward, and are not wrong
+};
+
+/// `around` has the solids that each component lies inside of.
+Judgement judge(const std::vector<Solid>& solids, const std::vector<std::vector<std::uint32_t>>& around,
+                Orient orient) {
   std::vector<std::uint32_t> order(solids.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return around[a].size() < around[b].size(); });
-  std::vector<std::uint8_t> wrong(solids.size(), 0);
+  Judgement judgement{std::vector<std::uint8_t>(solids.size(), 0), 0};
+  std::vector<std::uint8_t>& wrong = judgement.wrong;
   for (const auto c : order) {
     if (!solids[c].closed) continue;
     const bool cavity = around[c].size() % 2 == 1;
     if (solids[c].is_negative()) {
       wrong[c] = !cavity;
-    } else if (cavity) {
+    } else if (cavity && solids[c].volume > 0) {
       // A component that faces outward inside another may be a solid of its own, unless the innermost one around it is
       // inside out: then both are.
       const auto innermost =
           std::max_element(around[c].begin(), around[c].end(),
                            [&](std::uint32_t a, std::uint32_t b) { return around[a].size() < around[b].size(); });
-      wrong[c] = solids[c].volume > 0 && wrong[*innermost];
+      wrong[c] = orient == Orient::FixCavities || wrong[*innermost];
+      judgement.enclosed += !wrong[c];
     }
   }
-  return wrong;
+  return judgement;
 }
 
-std::vector<std::uint8_t> find_inside_out(const Surface& surface, const std::vector<std::uint32_t>& component_of,
-                                          std::vector<Solid>& solids) {
+/// Whether the box of any closed component lies in that of another one.
+bool any_box_in_another(const std::vector<Solid>& solids) {
+  BoxTree tree;
+  const auto box_of = [&](std::size_t c) {
+    FloatBox box;
+    if (!solids[c].closed) return box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lower[k] = static_cast<float>(solids[c].lower[static_cast<int>(k)]);
+      box.upper[k] = static_cast<float>(solids[c].upper[static_cast<int>(k)]);
+    }
+    return box;
+  };
+  tree.build(solids.size(), box_of);
+  for (std::size_t c = 0; c < solids.size(); ++c) {
+    const FloatBox inner = box_of(c);
+    const auto is_around = [&](std::size_t other) {
+      const FloatBox outer = box_of(other);
+      bool is_in = other != c;
+      for (std::size_t k = 0; k < 3; ++k)
+        is_in = is_in && outer.lower[k] <= inner.lower[k] && inner.upper[k] <= outer.upper[k];
+      return is_in;
+    };
+    if (solids[c].closed && tree.any_overlap(inner, is_around)) return true;
+  }
+  return false;
+}
+
+Judgement look_at_components(const Surface& surface, const std::vector<std::uint32_t>& component_of,
+                             std::vector<Solid>& solids, Orient orient) {
   std::vector<std::vector<std::uint32_t>> around(solids.size());
-  if (std::none_of(solids.begin(), solids.end(), [](const Solid& solid) { return solid.is_negative(); }))
-    return std::vector<std::uint8_t>(solids.size(), 0);
-  if (surface.facts.closed_components > 1) {
-    locate(surface, component_of, solids);
+  const bool several = surface.facts.closed_components > 1;
+  if (several) locate(surface, component_of, solids);
+  if (several && any_box_in_another(solids)) {
     const Nesting nesting(surface, component_of, solids);
     const auto look = [&](std::size_t c) {
       if (solids[c].closed) around[c] = nesting.solids_around(static_cast<std::uint32_t>(c));
     };
     for_each_index(solids.size(), look, 16);
   }
-  return judge(solids, around);
+  return judge(solids, around, orient);
 }
 
 }  // namespace
@@ -247,11 +281,13 @@ void settle_outside(Surface& surface, const std::vector<std::uint32_t>& componen
   std::vector<Solid> solids = find_solids(surface, component_of);
   facts.closed_components = static_cast<std::size_t>(
       std::count_if(solids.begin(), solids.end(), [](const Solid& solid) { return solid.closed; }));
-  const std::vector<std::uint8_t> wrong = find_inside_out(surface, component_of, solids);
+  const auto [wrong, enclosed] = look_at_components(surface, component_of, solids, orient);
+  facts.enclosed_components = enclosed;
   facts.inside_out_components = static_cast<std::size_t>(std::count(wrong.begin(), wrong.end(), 1));
   if (orient == Orient::Keep || facts.inside_out_components == 0) return;
   std::vector<std::uint8_t> turned(surface.triangles.size());
-  for_each_index(turned.size(), [&](std::size_t t) { turned[t] = wrong[component_of[t]]; });
+  const std::vector<std::uint8_t>& is_wrong = wrong;
+  for_each_index(turned.size(), [&](std::size_t t) { turned[t] = is_wrong[component_of[t]]; });
   turn_round(surface, turned);
 }
 

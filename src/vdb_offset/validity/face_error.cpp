@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -32,7 +33,7 @@ constexpr std::size_t kOfEachTriangle = kOnEachTriangle.size();
 constexpr std::size_t kPointsTogether = 16;
 // Share of the largest distance below which a point counts as asked to stay. Reasoned: errors are relative.
 constexpr double kLeastAsked = 1e-3;
-constexpr double kNotMeasured = -1;  // stands for the error of a point that is left out
+constexpr double kNoPlane = std::numeric_limits<double>::infinity();  // how far off the plane of a face without one is
 
 /// Where on a triangle the sample of a number is: by shares of its corners. The fractional parts of the multiples of
 /// two numbers cover a square evenly (Roberts, The unreasonable effectiveness of quasirandom sequences, 2018), and one
@@ -72,10 +73,8 @@ class FaceMeter {
   FaceError operator()() {
     if (triangles_.empty() || !(area_up_to_.back() > 0)) return {};
     measure_all(std::min(kMostSamples, kMostOfTriangle * triangles_.size()));
-    std::vector<double> errors = error_;
-    std::erase(errors, kNotMeasured);
-    FaceError result = sum_up_errors(std::move(errors));
-    if (!faces_.source.empty() && result.mean > kWorthTelling) tell_causes(result);
+    FaceError result = sum_up_errors(error_);
+    if (!faces_.source.empty() && (result.mean > kWorthTelling || share_too_far() > kWorthTelling)) tell_causes(result);
     return result;
   }
 
@@ -87,9 +86,9 @@ class FaceMeter {
     for (std::size_t i = 0; i < count_; ++i) {
       const std::size_t at = i / kOfEachTriangle;
       const std::uint32_t face = surface_.face[triangles_[at]];
-      if (error_[i] == kNotMeasured || face >= faces) continue;
+      if (!error_[i] || face >= faces) continue;
       const double share = area_up_to_[at] - (at > 0 ? area_up_to_[at - 1] : 0);
-      sum[face] += error_[i] * share;
+      sum[face] += size_of_error(i) * share;
       area[face] += share;
     }
     std::vector<float> errors(faces, std::numeric_limits<float>::quiet_NaN());
@@ -101,7 +100,7 @@ class FaceMeter {
  private:
   void measure_all(std::size_t count) {
     count_ = count;
-    error_.assign(count_, kNotMeasured);
+    error_.assign(count_, std::nullopt);
     of_.assign(count_, 0);
     for_each_index((count_ + kPointsTogether - 1) / kPointsTogether, [&](std::size_t block) { measure(block); }, 4);
   }
@@ -131,9 +130,9 @@ class FaceMeter {
       const std::uint32_t t = of_[begin + i] = triangle_of(begin + i);
       Vec3d point;
       std::tie(point, asked[i]) = sample(begin + i);
-      off_plane[i] = kNotMeasured;
+      off_plane[i] = kNoPlane;
       if (!faces_.source.empty() && surface_.triangle_normals[t].lengthSqr() > 0)
-        off_plane[i] = std::abs(over_plane(t, point) - asked[i]);
+        off_plane[i] = std::copysign(1, asked[i]) * (over_plane(t, point) - asked[i]);
       points[i] = point - origin;
       hints[i] = constrained_.hint_of_triangle(t);
     }
@@ -142,12 +141,18 @@ class FaceMeter {
     for (std::size_t i = 0; i < size; ++i) {
       const double wanted = std::abs(asked[i]);
       if (!(wanted > least_asked_)) continue;
-      double off = closest[i].distance - wanted;
-      if (off_plane[i] >= 0 && differs(of_[begin + i])) off = off_plane[i];
-      else if (off > 0 && off_plane[i] >= 0) off = std::min(off, off_plane[i]);
-      error_[begin + i] = std::abs(off) / wanted;
+      const double off = closest[i].distance - wanted;
+      const bool by_plane = off_plane[i] != kNoPlane && differs(of_[begin + i]);
+      error_[begin + i] = by_plane ? PointError{off_plane[i] / wanted, std::max(0.0, (off - off_plane[i]) / wanted)}
+                                   : point_error(off, off_plane[i], wanted);
     }
   }
+
+  static bool is_too_far(const std::optional<PointError>& error) { return error && error->off > kAtDistance; }
+  double share_too_far() const {
+    return static_cast<double>(std::count_if(error_.begin(), error_.end(), is_too_far)) / static_cast<double>(count_);
+  }
+  double size_of_error(std::size_t i) const { return std::abs(error_[i]->off); }
 
   /// A sample of the triangle that is noted for it, and what is asked there.
   std::pair<Vec3d, double> sample(std::size_t i) const {
@@ -196,9 +201,10 @@ class FaceMeter {
   void tell_causes(FaceError& result) const {
     const std::vector<std::uint8_t> sharp = vertices_at_corners(constrained_.moving_part.surface());
     const std::vector<double> no_room = lacks_of_room();
-    double sum = 0;
+    double sum = 0, beyond = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      if (error_[i] == kNotMeasured) continue;
+      if (!error_[i]) continue;
+      const double error = size_of_error(i);
       bool is_short = false, is_stuck = true, at_corner = false;
       for (const auto v : surface_.triangles[of_[i]]) {
         const std::uint32_t on_part = constrained_.part_vertex_of(v);
@@ -207,16 +213,20 @@ class FaceMeter {
         is_short = true;
         is_stuck &= (faces_.positions[v] - faces_.source[v]).length() <= kStuck * std::abs(faces_.distances[v]);
       }
-      sum += error_[i];
+      sum += error;
       if (is_short) {
-        (is_stuck ? result.stuck : result.held_back) += error_[i];
+        (is_stuck ? result.stuck : result.held_back) += error;
         continue;
       }
       result.no_room += no_room[i];
-      (at_corner ? result.corners : result.coarse) += error_[i] - no_room[i];
+      (at_corner ? result.corners : result.coarse) += error - no_room[i];
+      if (!at_corner || !is_too_far(error_[i])) continue;
+      ++beyond;
+      result.most_beyond = std::max(result.most_beyond, error);
     }
+    result.beyond = beyond / static_cast<double>(result.samples);
     for (double* const cause : {&result.held_back, &result.stuck, &result.no_room, &result.corners, &result.coarse})
-      *cause /= sum;
+      *cause = result.mean > kWorthTelling ? *cause / sum : 0;
   }
 
   /// For each sample the part of its error that comes of a lack of room.
@@ -228,12 +238,12 @@ class FaceMeter {
         [&](std::size_t i) {
           const std::uint32_t t = of_[i];
           const Vec3d& normal = surface_.triangle_normals[t];
-          if (!(error_[i] > kAtDistance) || normal.lengthSqr() == 0) return;
+          if (!error_[i] || !(size_of_error(i) > kAtDistance) || normal.lengthSqr() == 0) return;
           const auto [point, asked] = sample(i);
           const Vec3d in_plane = point + normal * (asked - over_plane(t, point)) - part.origin;
           const Closest closest = constrained_.moving_part(in_plane, constrained_.hint_of_triangle(t));
           lacks[i] = lack_of_room(in_plane, normal, asked, closest,
-                                  part.pseudonormal(closest.triangle, closest.feature), error_[i]);
+                                  part.pseudonormal(closest.triangle, closest.feature), size_of_error(i));
         },
         16);
     return lacks;
@@ -247,8 +257,8 @@ class FaceMeter {
   std::vector<double> area_up_to_;  // twice the areas
   std::size_t count_ = 0;
   bool of_each_triangle_ = false;
-  std::vector<double> error_;      // of each sample
-  std::vector<std::uint32_t> of_;  // likewise, the triangle that it is on
+  std::vector<std::optional<PointError>> error_;  // of each sample that is measured
+  std::vector<std::uint32_t> of_;                 // of each, the triangle that it is on
 };
 
 }  // namespace
@@ -268,19 +278,31 @@ double lack_of_room(const Vec3d& in_plane, const Vec3d& normal, double asked, co
   return std::clamp(1 - closest.distance / std::abs(asked), 0.0, error);
 }
 
-FaceError sum_up_errors(std::vector<double> errors) {
-  if (errors.empty()) return {};
+PointError point_error(double off, double off_plane, double wanted) {
+  const double left = off > 0 ? std::min(off, std::abs(off_plane)) : off;
+  return {left / wanted, (off - left) / wanted};
+}
+
+FaceError sum_up_errors(std::span<const std::optional<PointError>> errors) {
+  std::vector<double> sizes;
   FaceError result;
-  result.samples = errors.size();
   std::size_t there = 0;
-  for (const double e : errors) {
-    result.mean += e / static_cast<double>(errors.size());
-    result.worst = std::max(result.worst, e);
-    there += e <= kAtDistance;
+  for (const std::optional<PointError>& each : errors) {
+    if (!each) continue;
+    const double size = std::abs(each->off);
+    sizes.push_back(size);
+    result.mean += size;
+    result.farther += each->farther;
+    result.worst = std::max(result.worst, size);
+    there += size <= kAtDistance;
   }
-  result.at_distance = static_cast<double>(there) / static_cast<double>(errors.size());
-  const auto at = errors.begin() + static_cast<std::ptrdiff_t>(99 * errors.size() / 100);
-  std::nth_element(errors.begin(), at, errors.end());
+  if (sizes.empty()) return result;
+  result.samples = sizes.size();
+  const auto count = static_cast<double>(sizes.size());
+  for (double* const sum : {&result.mean, &result.farther}) *sum /= count;
+  result.at_distance = static_cast<double>(there) / count;
+  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(99 * sizes.size() / 100);
+  std::nth_element(sizes.begin(), at, sizes.end());
   result.quantile_99 = *at;
   return result;
 }

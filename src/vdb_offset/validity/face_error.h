@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,7 +52,16 @@ std::vector<float> measure_each_face(const MeasuredFaces& faces, std::size_t cou
 double lack_of_room(const Vec3d& in_plane, const Vec3d& normal, double asked, const Closest& closest,
                     const Vec3d& opposite, double error);
 
-/// Sums up errors relative to the distance that was asked, each of the same share of the area or length.
-FaceError sum_up_errors(std::vector<double> errors);
+/// How far a point is off its distance, relative to that.
+struct PointError {
+  double off = 0;      ///< Above 0: too far away. Of its face's plane, where that is less than a point is too far away.
+  double farther = 0;  ///< How much farther away than that the point itself is.
+};
+
+/// \param off, off_plane how far a point, and the plane of its face, are off `wanted`, above 0: too far away
+PointError point_error(double off, double off_plane, double wanted);
+
+/// Sums up errors, each of the same share of the area or length; none: it was not measured.
+FaceError sum_up_errors(std::span<const std::optional<PointError>> errors);
 
 }  // namespace vdb_offset

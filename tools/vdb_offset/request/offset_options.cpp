@@ -320,7 +320,8 @@ void declare_method(CommandLine& line, Draft& draft) {
       });
   line.option("--orient", "MODE",
               "Outward is where the faces point ('keep'), or out of what a closed component encloses even where it "
-              "is inside out ('fix-direction-only'; the faces stay as they are) [keep]",
+              "is inside out ('fix-direction-only'; the faces stay as they are), also where it is a cavity whose faces "
+              "point outward ('fix-cavities') [keep]",
               [&request](const std::string& text) {
                 request.orient_text = text;
                 request.orient = parse_orient(text);

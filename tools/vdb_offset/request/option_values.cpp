@@ -233,7 +233,8 @@ WeldOptions parse_weld(const std::string& text) {
 }
 
 Orient parse_orient(const std::string& text) {
-  return parse_word("--orient", text, {"keep", "fix-direction-only"}) == 0 ? Orient::Keep : Orient::FixDirectionOnly;
+  constexpr std::array kOrients = {Orient::Keep, Orient::FixDirectionOnly, Orient::FixCavities};
+  return kOrients[parse_word("--orient", text, {"keep", "fix-direction-only", "fix-cavities"})];
 }
 
 SymmetryPlane parse_plane(const std::string& text) {

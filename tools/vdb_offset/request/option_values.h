@@ -85,7 +85,7 @@ scene::Distance parse_flatten(const std::string& text);
 /// 'auto', 'exact', 'none' or a tolerance.
 WeldOptions parse_weld(const std::string& text);
 
-/// 'keep' or 'fix-direction-only'.
+/// 'keep', 'fix-direction-only' or 'fix-cavities'.
 Orient parse_orient(const std::string& text);
 
 /// 'x=0', or another axis and number, or 'A,B,C,D' for A x + B y + C z = D.

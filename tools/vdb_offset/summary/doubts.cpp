@@ -135,12 +135,21 @@ std::string planes_in_words(std::span<const SymmetryPlane> planes) {
 }
 
 void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient) {
-  if (facts.inside_out_components > 0)
+  if (facts.inside_out_components > 0 && orient == Orient::FixCavities)
+    fmt::print(out,
+               "{} of {} closed components point the wrong way, and are taken as turned; the faces stay as they are\n",
+               facts.inside_out_components, facts.closed_components);
+  else if (facts.inside_out_components > 0)
     fmt::print(out, "{} of {} closed components point inward as a whole: {}\n", facts.inside_out_components,
                facts.closed_components,
                orient == Orient::Keep
                    ? "a distance above 0 shrinks them (--orient fix-direction-only enlarges them)"
                    : "taken as turned, a distance above 0 enlarges them; the faces stay as they are");
+  if (facts.enclosed_components > 0)
+    fmt::print(out,
+               "{} of {} closed components lie inside another one and point outward as it does: a distance above 0 "
+               "enlarges them (if they are cavities, --orient fix-cavities shrinks them)\n",
+               facts.enclosed_components, facts.closed_components);
   if (facts.orientation_conflicts > 0)
     fmt::print(out,
                "{} edges between faces that disagree about the outside: {} triangles taken as turned, {} edges left\n",

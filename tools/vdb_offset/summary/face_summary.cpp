@@ -20,6 +20,9 @@ constexpr double kLeastTold = 0.25;
 // as being at the distance.
 constexpr double kWorthTelling = 0.01;
 
+// Share of the distance by less than which faces that are farther are not reported. Not measured: nobody would see it.
+constexpr double kLeastFarther = 1e-3;
+
 /// A share as a percentage; next to nothing is rounding.
 std::string percent(double share) { return share < 1e-8 ? "0" : fmt::format("{:.3g}", 100 * share); }
 
@@ -52,12 +55,27 @@ std::string corners_in_words(const Job& job, const OffsetStatistics& statistics)
                      which.empty() ? "that are not mitred" : fmt::to_string(fmt::join(which, ", or ")));
 }
 
+/// Says how much is too far away at corners of many planes, and what helps.
+void print_beyond(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
+  const FaceError& faces = statistics.faces;
+  if (faces.beyond < kWorthTelling) return;
+  fmt::print(out,
+             "{:.1f} % of the area is too far away, by up to {:.0f} %, beside corners where more planes meet than one "
+             "vertex can be on{}\n",
+             100 * faces.beyond, 100 * faces.most_beyond,
+             may_be_split(job, statistics)
+                 ? fmt::format(": --tolerance 1%{} splits faces until they are at the distance",
+                               job.options.corners == Corners::Round ? " --corners miter" : "")
+                 : "");
+}
+
 }  // namespace
 
 void print_faces(std::FILE* out, const FaceError& faces, bool curves) {
   if (faces.samples == 0) return;
   fmt::print(out, "; {} {} % off on average, {:.1f} % of the {} within 1 %", curves ? "segments" : "faces",
              percent(faces.mean), 100 * faces.at_distance, curves ? "length" : "area");
+  if (faces.farther > kLeastFarther) fmt::print(out, ", {:.3g} % farther by miters", 100 * faces.farther);
 }
 
 std::size_t faces_in(const MeshFacts& facts) {
@@ -114,6 +132,7 @@ void print_iso_cause(std::FILE* out, const FaceError& faces) {
 }
 
 void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
+  print_beyond(out, job, statistics);
   const FaceError& faces = statistics.faces;
   const bool curves = job.curves();
   std::vector<std::pair<double, std::string>> causes{
