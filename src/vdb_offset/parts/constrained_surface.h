@@ -60,6 +60,8 @@ struct ConstrainedSurface {
   /// Of each vertex: how near to the triangles of the moving part it may be and yet be at its distance from the exact
   /// surface; 0 if it has to be as far as asked. Empty: all have.
   std::span<const double> nearer;
+  /// Of each vertex of the moving part: whether it is on a crease. Empty: that is not known.
+  std::span<const std::uint8_t> on_crease;
 
   /// How far the surface's vertices may be off where they were before their digits were cut to those of a file, as in a
   /// refined mesh, whose added vertices were in the planes of faces: distances are no more exact than that.
@@ -105,7 +107,8 @@ struct ConstrainedSurface {
     return surface.origin == moving_part.surface().origin && fits(part_vertex, surface.vertices.size()) &&
            fits(off_part, surface.triangles.size()) && fits(bound, surface.vertices.size()) &&
            fits(other_skin, surface.vertices.size()) && fits(farther, surface.vertices.size()) &&
-           fits(nearer, surface.vertices.size()) && part_vertex.empty() == off_part.empty() &&
+           fits(nearer, surface.vertices.size()) && fits(on_crease, moving_part.surface().vertices.size()) &&
+           part_vertex.empty() == off_part.empty() &&
            (!obstacles || obstacles->query.surface().origin == surface.origin);
   }
 };

@@ -159,11 +159,17 @@ bool is_way_free(const Query& query, std::uint32_t vertex, const Vec3d& end, Clo
 template <class Query>
 MiterFinder<Query>::MiterFinder(const Query& query, Corners corners, double longest, const Obstacles* obstacles,
                                 std::span<const MiterWalls> walls, const ExactCorners* exact)
-    : query_(query), corners_(corners), longest_(longest), obstacles_(obstacles), walls_(walls), exact_(exact) {
+    : query_(query),
+      corners_(corners),
+      longest_(longest),
+      obstacles_(obstacles),
+      walls_(walls),
+      exact_(exact),
+      on_crease_(vertices_on_creases(query.surface())) {
   VDB_OFFSET_ASSERT(longest >= 1);
-  std::vector<std::uint8_t> on_crease = vertices_on_creases(query.surface());
-  for (std::uint32_t v = 0; v < on_crease.size(); ++v)
-    if (on_crease[v] || (exact && exact->knows(v))) miters_.push_back({v, Vec3d(0.0), 0, {}, on_crease[v] != 0, false});
+  for (std::uint32_t v = 0; v < on_crease_.size(); ++v)
+    if (on_crease_[v] || (exact && exact->knows(v)))
+      miters_.push_back({v, Vec3d(0.0), 0, {}, on_crease_[v] != 0, false});
   for_each_index(
       miters_.size(), [&](std::size_t i) { miters_[i] = unit_miter(miters_[i].vertex, miters_[i].on_crease); },
       kMitersTogether);

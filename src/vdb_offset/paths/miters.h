@@ -78,6 +78,8 @@ class MiterFinder {
   /// many were tried and why others were not kept. The result does not depend on the number of threads.
   /// \param own of the surface's triangles, if faces have distances of their own
   std::vector<Miter> operator()(const Distances& distances, MiterFacts& facts, const OwnDistances* own = nullptr) const;
+  /// Of each vertex of the surface: whether it is on a crease.
+  const std::vector<std::uint8_t>& on_crease() const { return on_crease_; }
   /// All miters that are no nearer to the surface than the distance, proven or not: to tell where somebody else has put
   /// vertices.
   std::vector<Miter> all(const Distances& distances, const OwnDistances* own = nullptr) const;
@@ -125,6 +127,7 @@ class MiterFinder {
   const Obstacles* obstacles_;
   std::span<const MiterWalls> walls_;
   const ExactCorners* exact_;
+  std::vector<std::uint8_t> on_crease_;
   std::vector<UnitMiter> miters_;  // of all vertices on creases or known, sorted; `end` is zero of one without a miter
 };
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "vdb_offset/base/parallel.h"
 #include "vdb_offset/surface/start_direction.h"
 
 namespace vdb_offset {
@@ -28,12 +30,13 @@ template <class Query>
 SideRoom measure(const Query& query, const Distances& distances) {
   const auto& surface = query.surface();
   const std::size_t count = surface.vertices.size(), step = std::max<std::size_t>(1, count / kSamples);
-  std::size_t asked = 0, here = 0, there = 0;
-  for (std::size_t i = 0; i < count; i += step) {
-    const auto v = static_cast<std::uint32_t>(i);
+  enum : std::uint8_t { kAsked = 1, kHere = 2, kThere = 4 };
+  std::vector<std::uint8_t> found((count + step - 1) / step, 0);
+  const auto look = [&](std::size_t i) {
+    const auto v = static_cast<std::uint32_t>(i * step);
     const StartDirection start = start_of(surface, v);
     const double distance = distances[v];
-    if (distance == 0 || surface.triangles_around(v).empty() || !(start.slope > kLeastSlopeSeen)) continue;
+    if (distance == 0 || surface.triangles_around(v).empty() || !(start.slope > kLeastSlopeSeen)) return;
     const auto has_room = [&](double distance_there) {
       double length = distance_there;
       for (int k = 0; k <= kRoomHalvings; ++k, length /= 2) {
@@ -43,13 +46,19 @@ SideRoom measure(const Query& query, const Distances& distances) {
       }
       return true;
     };
-    ++asked;
-    here += has_room(distance);
-    there += has_room(-distance);
-  }
+    found[i] =
+        static_cast<std::uint8_t>(kAsked + (has_room(distance) ? kHere : 0) + (has_room(-distance) ? kThere : 0));
+  };
+  for_each_index(found.size(), look, 16);
+  const auto count_of = [&](std::uint8_t what) {
+    return std::count_if(found.begin(), found.end(), [&](std::uint8_t each) { return (each & what) != 0; });
+  };
+  const auto asked = count_of(kAsked);
   if (asked == 0) return {};
-  const auto share = [&](std::size_t some) { return static_cast<double>(some) / static_cast<double>(asked); };
-  return {true, share(here), share(there)};
+  const auto share = [&](std::uint8_t what) {
+    return static_cast<double>(count_of(what)) / static_cast<double>(asked);
+  };
+  return {true, share(kHere), share(kThere)};
 }
 
 }  // namespace

@@ -134,14 +134,16 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
 
 /// Gives vertices on creases their miters, or with Corners::Round those whose ends are at the distance; and border
 /// vertices of a part that slide theirs where the moved faces meet those that stay.
-void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> marched, bool on_creases) const {
+void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> marched, bool on_creases) {
   const bool may_go_farther = options_.corners == Corners::Miter;
   const std::vector<MiterWalls> walls =
       may_go_farther ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
   std::optional<MiterFinder<ClosestQuery>> miters;
-  if (on_creases)
+  if (on_creases) {
     miters.emplace(*query_, options_.corners, options_.miter_limit, obstacles(), std::span<const MiterWalls>(walls),
                    exact());
+    on_crease_ = miters->on_crease();
+  }
   for (std::size_t i = 0; i < marched.size(); ++i) {
     Marched& each = marched[i];
     MiterFacts facts;
@@ -259,6 +261,7 @@ ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_so
   constrained.bound = marched.bound;
   constrained.farther = marched.mitred.farther();
   constrained.nearer = marched.mitred.nearer();
+  constrained.on_crease = on_crease_;
   constrained.vertex_error = marched.vertex_error;
   return constrained;
 }

@@ -98,7 +98,7 @@ class PreparedMesh {
   std::vector<Paths> find_paths(std::span<const Distances> on_part, Ridges ridges);
   Marched of_all(const Distances& on_part, Paths of_part);
   void hold(const Distances& distances, Marched& marched) const;
-  void miter(std::span<const Distances> on_part, std::span<Marched> marched, bool on_creases) const;
+  void miter(std::span<const Distances> on_part, std::span<Marched> marched, bool on_creases);
   void bring_to_distance(const Distances& distances, Marched& marched) const;
 
   const InMetric& space_;
@@ -112,7 +112,8 @@ class PreparedMesh {
   std::vector<Vec3d> source_;
   std::optional<Surroundings> surroundings_;
   std::optional<BorderSlides> slides_;
-  bool has_edge_miters_ = false;  // of one offset; layers slide to each of their heights
+  std::vector<std::uint8_t> on_crease_;  // of the moving part's vertices; empty if none was asked for yet
+  bool has_edge_miters_ = false;         // of one offset; layers slide to each of their heights
 };
 
 /// The vertices of a mesh, as an InputVertices.

@@ -26,6 +26,10 @@ constexpr std::size_t kFewestOfTip = 4;
 // Edges that are as sharp as this are creases, however few they are: the rim of a flat pyramid has three. 60 degrees,
 // not measured.
 constexpr double kUnmistakable = 60 * std::numbers::pi / 180;
+// How far a plane may be from the point that three others meet in, for all to meet as nearly as kOnePlaneSine says: as
+// a share of the distance, times the volume that the normals of the three span. Reasoned: each of the three moves the
+// point by as much at most.
+constexpr double kNearlyMeets = 10 * kOnePlaneSine;
 // Share by which one angle may differ as seen from both ends of its edge. Reasoned: single precision.
 constexpr double kSameBend = 1e-6;
 // A line of fewer edges than this that ends in the surface is no crease, nor is a net of fewer.
@@ -114,8 +118,29 @@ class CreaseFinder {
     return planes;
   }
 
+  /// Whether all planes around a vertex go by the point that three of them meet in once they have moved, or nearly so;
+  /// true where it is not known. For speed: in scans they nearly never do.
+  bool may_meet(std::uint32_t vertex) const {
+    if (!surface_.conormals.empty() && surface_.conormals[vertex].lengthSqr() > 0) return true;
+    const auto around = surface_.triangles_around(vertex);
+    const auto& normals = surface_.triangle_normals;
+    const Vec3d first = normals[around[0]];
+    Vec3d second = first, third = first;
+    for (const auto t : around)
+      if (first.dot(normals[t]) < first.dot(second)) second = normals[t];
+    const Vec3d across = first.cross(second);
+    for (const auto t : around)
+      if (std::abs(across.dot(normals[t])) > std::abs(across.dot(third))) third = normals[t];
+    const double volume = across.dot(third);
+    const Vec3d point = across + second.cross(third) + third.cross(first);  // times the volume
+    return std::all_of(around.begin(), around.end(), [&](std::uint32_t t) {
+      return normals[t].lengthSqr() == 0 || std::abs(normals[t].dot(point) - volume) <= kNearlyMeets;
+    });
+  }
+
   /// Whether the planes around a vertex meet in one point once they have moved.
   bool planes_meet(std::uint32_t vertex) const {
+    if (!may_meet(vertex)) return false;
     const auto point = miter_point(planes_at(vertex).normals);
     return point && point->excess <= kOnePlaneSine;
   }
@@ -129,7 +154,7 @@ class CreaseFinder {
     // For speed: around the axis of a tip, some plane bends from any other one by more than that.
     if (std::none_of(around.begin(), around.end(),
                      [&](std::uint32_t t) { return normals[t].dot(normals[around[0]]) <= kCosine; }) ||
-        branches(vertex))
+        !may_meet(vertex) || branches(vertex))
       return false;
     const PlanesAround planes = planes_at(vertex);
     if (planes.normals.size() < kFewestOfTip) return false;

@@ -13,6 +13,8 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
+#include "vdb_offset/mesh/miter_point.h"
+#include "vdb_offset/mesh/planes_around.h"
 #include "vdb_offset/surface/creases.h"
 
 namespace vdb_offset {
@@ -29,6 +31,8 @@ constexpr double kMost = 2.0 / 3, kLeast = 1.0 / 6, kThird = 1.0 / 3;
 constexpr std::array<std::array<double, 3>, 4> kOnEachTriangle = {
     {{kThird, kThird, kThird}, {kMost, kLeast, kLeast}, {kLeast, kMost, kLeast}, {kLeast, kLeast, kMost}}};
 constexpr std::size_t kOfEachTriangle = kOnEachTriangle.size();
+// Of the points that are measured, one in so many is asked for the cause of its error: ten thousand give shares to 1 %.
+constexpr std::size_t kOneInCauses = 4;
 // Points that are measured together, as the exact query answers neighbours together. Not measured.
 constexpr std::size_t kPointsTogether = 16;
 // Share of the largest distance below which a point counts as asked to stay. Reasoned: errors are relative.
@@ -52,9 +56,12 @@ std::array<double, 3> shares_of(std::size_t sample) {
   return {1 - u - v, u, v};
 }
 
-/// Marks the vertices at which a corner may be sharp: those on creases, and on edges of more than two faces.
-std::vector<std::uint8_t> vertices_at_corners(const Surface& surface) {
-  std::vector<std::uint8_t> sharp = vertices_on_creases(surface);
+/// Marks the vertices of the moving part at which a corner may be sharp: those on creases, and on edges of more than
+/// two faces.
+std::vector<std::uint8_t> vertices_at_corners(const ConstrainedSurface& constrained) {
+  const Surface& surface = constrained.moving_part.surface();
+  std::vector<std::uint8_t> sharp(constrained.on_crease.begin(), constrained.on_crease.end());
+  if (sharp.empty()) sharp = vertices_on_creases(surface);
   for (std::uint32_t h = 0; h < surface.next_around_edge.size(); ++h)
     if (surface.next_around_edge[surface.next_around_edge[h]] != h) sharp[surface.from(h)] = sharp[surface.to(h)] = 1;
   return sharp;
@@ -199,16 +206,21 @@ class FaceMeter {
   }
 
   void tell_causes(FaceError& result) const {
-    const std::vector<std::uint8_t> sharp = vertices_at_corners(constrained_.moving_part.surface());
-    const std::vector<double> no_room = lacks_of_room();
-    double sum = 0, beyond = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
+    const std::vector<Corner> corner = corners_off_planes();
+    const bool is_worth_telling = result.mean > kWorthTelling;
+    const std::vector<double> no_room = is_worth_telling ? lacks_of_room() : std::vector<double>(count_, 0);
+    double sum = 0, beyond = 0, asked = 0;
+    for (std::size_t i = 0; i < count_; i += kOneInCauses) {
       if (!error_[i]) continue;
+      ++asked;
       const double error = size_of_error(i);
-      bool is_short = false, is_stuck = true, at_corner = false;
+      bool is_short = false, is_stuck = true, at_corner = false, has_room = true, of_many = false;
       for (const auto v : surface_.triangles[of_[i]]) {
-        const std::uint32_t on_part = constrained_.part_vertex_of(v);
-        at_corner |= on_part != kNone && sharp[on_part] && is_off_plane(of_[i], v);
+        if (corner[v] != Corner::None && is_off_plane(of_[i], v)) {
+          at_corner = true;
+          has_room &= corner[v] != Corner::NoRoom;
+          of_many |= corner[v] == Corner::ManyPlanes;
+        }
         if (faces_.states.empty() || !falls_short(faces_.states[v])) continue;
         is_short = true;
         is_stuck &= (faces_.positions[v] - faces_.source[v]).length() <= kStuck * std::abs(faces_.distances[v]);
@@ -219,33 +231,80 @@ class FaceMeter {
         continue;
       }
       result.no_room += no_room[i];
-      (at_corner ? result.corners : result.coarse) += error - no_room[i];
-      if (!at_corner || !is_too_far(error_[i])) continue;
+      (!at_corner ? result.coarse : has_room ? result.corners : result.no_room) += error - no_room[i];
+      if (!of_many || !has_room || !is_too_far(error_[i])) continue;
       ++beyond;
       result.most_beyond = std::max(result.most_beyond, error);
     }
-    result.beyond = beyond / static_cast<double>(result.samples);
+    result.beyond = asked > 0 ? beyond / asked : 0;
     for (double* const cause : {&result.held_back, &result.stuck, &result.no_room, &result.corners, &result.coarse})
-      *cause = result.mean > kWorthTelling ? *cause / sum : 0;
+      *cause = is_worth_telling && sum > 0 ? *cause / sum : 0;
+  }
+
+  /// What a vertex is that is off the plane of a face which is measured off its distance.
+  enum class Corner : std::uint8_t {
+    None,        ///< Not at a sharp corner, or on all these planes.
+    OnePoint,    ///< One point is on all planes around it, moved by the distance.
+    NoRoom,      ///< Likewise, and that point has none: just a smaller distance helps.
+    ManyPlanes,  ///< More planes meet there than one point can be on.
+  };
+  std::vector<Corner> corners_off_planes() const {
+    const std::vector<std::uint8_t> sharp = vertices_at_corners(constrained_);
+    std::vector<Corner> corner(surface_.vertices.size(), Corner::None);
+    std::vector<std::uint32_t> some;
+    for (std::size_t i = 0; i < count_; i += kOneInCauses) {
+      if (!error_[i] || !(size_of_error(i) > kAtDistance)) continue;
+      for (const auto v : surface_.triangles[of_[i]]) {
+        const std::uint32_t on_part = constrained_.part_vertex_of(v);
+        if (corner[v] != Corner::None || on_part == kNone || !sharp[on_part] || !is_off_plane(of_[i], v)) continue;
+        corner[v] = Corner::OnePoint;
+        some.push_back(v);
+      }
+    }
+    for_each_index(
+        some.size(), [&](std::size_t i) { corner[some[i]] = corner_at(some[i]); }, 16);
+    return corner;
+  }
+
+  Corner corner_at(std::uint32_t v) const {
+    const double asked = faces_.distances[v];
+    if (asked == 0 || (faces_.own && faces_.own->differ(v))) return Corner::OnePoint;
+    const PlanesAround planes =
+        planes_around(surface_, v, [&](std::uint32_t t) -> const Vec3d& { return surface_.triangle_normals[t]; });
+    const auto miter = miter_point(planes.normals);
+    if (!miter || miter->excess > kAtDistance) return Corner::ManyPlanes;
+    const Surface& part = constrained_.moving_part.surface();
+    const Vec3d end = faces_.source[v] + miter->position * asked - part.origin;
+    const Closest closest =
+        constrained_.moving_part(end, constrained_.hint_of_triangle(surface_.triangles_around(v)[0]));
+    // Faces that meet at the vertex are no wall.
+    const auto& corners = part.triangles[closest.triangle];
+    if (std::find(corners.begin(), corners.end(), constrained_.part_vertex_of(v)) != corners.end())
+      return Corner::OnePoint;
+    const Vec3d opposite = part.pseudonormal(closest.triangle, closest.feature);
+    const bool has_room = std::none_of(planes.normals.begin(), planes.normals.end(), [&](const Vec3d& normal) {
+      return lack_of_room(end, normal, asked, closest, opposite, 1) > kAtDistance;
+    });
+    return has_room ? Corner::OnePoint : Corner::NoRoom;
   }
 
   /// For each sample the part of its error that comes of a lack of room.
   std::vector<double> lacks_of_room() const {
     std::vector<double> lacks(count_, 0);
     const Surface& part = constrained_.moving_part.surface();
-    for_each_index(
-        count_,
-        [&](std::size_t i) {
-          const std::uint32_t t = of_[i];
-          const Vec3d& normal = surface_.triangle_normals[t];
-          if (!error_[i] || !(size_of_error(i) > kAtDistance) || normal.lengthSqr() == 0) return;
-          const auto [point, asked] = sample(i);
-          const Vec3d in_plane = point + normal * (asked - over_plane(t, point)) - part.origin;
-          const Closest closest = constrained_.moving_part(in_plane, constrained_.hint_of_triangle(t));
-          lacks[i] = lack_of_room(in_plane, normal, asked, closest,
-                                  part.pseudonormal(closest.triangle, closest.feature), size_of_error(i));
-        },
-        16);
+    for_each_index((count_ + kOneInCauses - 1) / kOneInCauses,
+                   [&](std::size_t among_those) {
+                     const std::size_t i = among_those * kOneInCauses;
+                     const std::uint32_t t = of_[i];
+                     const Vec3d& normal = surface_.triangle_normals[t];
+                     if (!error_[i] || !(size_of_error(i) > kAtDistance) || normal.lengthSqr() == 0) return;
+                     const auto [point, asked] = sample(i);
+                     const Vec3d in_plane = point + normal * (asked - over_plane(t, point)) - part.origin;
+                     const Closest closest = constrained_.moving_part(in_plane, constrained_.hint_of_triangle(t));
+                     lacks[i] = lack_of_room(in_plane, normal, asked, closest,
+                                             part.pseudonormal(closest.triangle, closest.feature), size_of_error(i));
+                   },
+                   16);
     return lacks;
   }
 
