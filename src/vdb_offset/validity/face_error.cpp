@@ -214,25 +214,15 @@ class FaceMeter {
       if (!error_[i]) continue;
       ++asked;
       const double error = size_of_error(i);
-      bool is_short = false, is_stuck = true, at_corner = false, has_room = true, of_many = false;
-      for (const auto v : surface_.triangles[of_[i]]) {
-        if (corner[v] != Corner::None && is_off_plane(of_[i], v)) {
-          at_corner = true;
-          has_room &= corner[v] != Corner::NoRoom;
-          of_many |= corner[v] == Corner::ManyPlanes;
-        }
-        if (faces_.states.empty() || !falls_short(faces_.states[v])) continue;
-        is_short = true;
-        is_stuck &= (faces_.positions[v] - faces_.source[v]).length() <= kStuck * std::abs(faces_.distances[v]);
-      }
+      const Corners3 corners = corners_of(i, corner);
       sum += error;
-      if (is_short) {
-        (is_stuck ? result.stuck : result.held_back) += error;
+      if (corners.is_short) {
+        (corners.is_stuck ? result.stuck : result.held_back) += error;
         continue;
       }
       result.no_room += no_room[i];
-      (!at_corner ? result.coarse : has_room ? result.corners : result.no_room) += error - no_room[i];
-      if (!of_many || !has_room || !is_too_far(error_[i])) continue;
+      (!corners.is_sharp ? result.coarse : corners.has_room ? result.corners : result.no_room) += error - no_room[i];
+      if (!corners.is_of_many || !corners.has_room || !is_too_far(error_[i])) continue;
       ++beyond;
       result.most_beyond = std::max(result.most_beyond, error);
     }
@@ -248,6 +238,27 @@ class FaceMeter {
     NoRoom,      ///< Likewise, and that point has none: just a smaller distance helps.
     ManyPlanes,  ///< More planes meet there than one point can be on.
   };
+  /// What the corners of a triangle are.
+  struct Corners3 {
+    bool is_short = false, is_stuck = true;  ///< One of them at least falls short; all that do have not moved.
+    /// One at least is sharp and off the triangle's plane; none of these lacks room; one is of many planes.
+    bool is_sharp = false, has_room = true, is_of_many = false;
+  };
+  Corners3 corners_of(std::size_t sample, const std::vector<Corner>& corner) const {
+    Corners3 corners;
+    for (const auto v : surface_.triangles[of_[sample]]) {
+      if (corner[v] != Corner::None && is_off_plane(of_[sample], v)) {
+        corners.is_sharp = true;
+        corners.has_room &= corner[v] != Corner::NoRoom;
+        corners.is_of_many |= corner[v] == Corner::ManyPlanes;
+      }
+      if (faces_.states.empty() || !falls_short(faces_.states[v])) continue;
+      corners.is_short = true;
+      corners.is_stuck &= (faces_.positions[v] - faces_.source[v]).length() <= kStuck * std::abs(faces_.distances[v]);
+    }
+    return corners;
+  }
+
   std::vector<Corner> corners_off_planes() const {
     const std::vector<std::uint8_t> sharp = vertices_at_corners(constrained_);
     std::vector<Corner> corner(surface_.vertices.size(), Corner::None);
