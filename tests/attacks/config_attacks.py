@@ -26,6 +26,16 @@ FILES = {
     'not text': (b'distance = "\xff\xfe"\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
     'zeros': (b'\0' * 4096, 1, '^vdb_offset: all.toml:1: expected TOML: '),
     'deep': ('distance = ' + '[' * 100000 + '\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'deep key': ('a.' * 100000 + 'a = 1\n', 1, '^vdb_offset: all.toml:1: expected TOML: a key of at most 64 parts$'),
+    'deep key in quotes': ('distance = 1\n' + '"a".' * 100000 + 'a = 1\n', 1, 'all.toml:2: expected TOML: a key of at most'),
+    'deep key with blanks': ("a . 'b' . " * 50000 + 'a = 1\n', 1, 'all.toml:1: expected TOML: a key of at most'),
+    'deep key in a table': ('x = { ' + 'a.' * 100000 + 'a = 1 }\n', 1, 'all.toml:1: expected TOML: a key of at most'),
+    'deep table': ('[' + 'a.' * 100000 + 'a]\n', 1, 'all.toml:1: expected TOML: a key of at most'),
+    'deep tables': ('[[' + 'a.' * 100000 + 'a]]\n', 1, 'all.toml:1: expected TOML: a key of at most'),
+    'deep inline tables': ('x = ' + '{ a = ' * 100000, 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'key in many lines': ('a.\n' * 100000, 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'long key': ('a' * 100000 + ' = 1\n', 1, '^vdb_offset: all.toml:1: expected the long name of an option, got one of 100000'),
+    'hosts': ('distance = 0.1\nsshlogin = "node"\n', 1, '^vdb_offset: all.toml:2: sshlogin: expected on the command line alone'),
     'cut': ('distance = "1', 1, '^vdb_offset: all.toml:1: expected TOML: '),
     'large': ('# a\n' * 1000000, 1, 'all.toml: expected a file of options .TOML., got more than'),
     'several lines': ('distance = """1\n2"""\n', 1, 'distance'),
@@ -38,6 +48,31 @@ def file_of_options(place, case):
     place.box()
     place.file('all.toml', text)
     place.refused(place.run(*ONE), code, says)
+
+
+HOSTS = ['node;touch PWN', 'node\ntouch PWN', '$(touch PWN)', '`touch PWN`', 'ssh node', '-oProxyCommand=touch PWN', '..',
+         '@group', '1/ssh -l x node', 'a b', '', 'node,', ',node', 'node:', 'node:x', 'x@', '@node', 'x@@node', '/node', 'n/node',
+         '1//node', 'node/1', 'node|touch PWN', "node'", 'no"de', 'node\\', 'node#', '~/hosts', '/etc/hosts', '100000/node']
+
+
+@attack_each({host: host for host in HOSTS})
+def machines_that_are_words_of_a_shell(place, host):
+    place.box('in/box.obj')
+    place.refused(place.run('batch', 'in', 'out', '-d', '0.1', '--sshlogin', host), 1, '--sshlogin: expected|expected a value|required')
+    place.file('house.toml', f'distance = 0.1\nsshlogin = {host!r}\n' if "'" not in host and '\n' not in host and '\\' not in host
+               else 'sshlogin = "node;touch PWN"\n')
+    place.refused(place.run('batch', 'in', 'out', '--config', 'house.toml'), 1, 'sshlogin: expected on the command line alone')
+    place.check('PWN' not in place.names(), 'a file of options ran a command')
+
+
+PARTITIONS = ['a b', 'a;touch PWN', '-x', 'a\nb', '$(x)', '', 'a,,b', '--wrap=touch PWN']
+
+
+@attack_each({name: name for name in PARTITIONS})
+def partitions_that_are_none(place, name):
+    place.box('in/box.obj')
+    place.refused(place.run('batch', 'in', 'out', '-d', '0.1', f'--slurm={name}'), 1, '--slurm: expected|--slurm: 1 required')
+    place.check('PWN' not in place.names(), 'a partition ran a command')
 
 
 @attack

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Outputs that would take the place of each other, or of what is read."""
+import base64
+import json
 import os
 
 from attack import BOX, attack, attack_each
@@ -19,6 +21,20 @@ def set_up(place):
     place.file('faces.txt', '0 1')
     place.file('socket.obj', BOX)
     place.file('scene.json', '{"file": "box.obj", "offset": {"distance": 0.1}}')
+    place.file('house.toml', 'distance = 0.1\n')
+    os.symlink('house.toml', place.folder / 'options.csv')
+    place.file('named.obj', 'mtllib named.mtl more.mtl\nmtllib two words.mtl\n' + BOX)
+    for name in ('named.mtl', 'more.mtl', 'two words.mtl', 'wall.mtl'):
+        place.file(name, 'newmtl a\n')
+    os.symlink('two words.mtl', place.folder / 'two.csv')
+    place.file('named_wall.obj', 'mtllib wall.mtl\n' + BOX.replace('v 0', 'v 9').replace('v 1', 'v 11'))
+    place.run('box.obj', 'box.gltf', '-d', '0', '-q')
+    text = json.loads((place.folder / 'box.gltf').read_text())
+    place.file('box.bin', base64.b64decode(text['buffers'][0]['uri'].partition('base64,')[2]))
+    text['buffers'][0]['uri'] = 'box.bin'
+    text['images'] = [{'uri': 'red.png'}]
+    place.file('box.gltf', json.dumps(text))
+    place.file('red.png', 'an image')
     place.file('sub/old.json', 'old')
     os.symlink('sub', place.folder / 'link')
     os.symlink('sub/new.json', place.folder / 'dangling.json')
@@ -81,9 +97,21 @@ CLASHES = {
                                                      '--report: .*OUTPUT'),
     'a report on points': ('box.obj polyMesh --layers 2 --first-height 0.1 --report polyMesh/points', '--report: .*OUTPUT'),
     'a report on a surface': ('box.obj o.obj -d 0.1 --mode iso --report o.obj', '--report: .*OUTPUT'),
+    'a report on the options': ('box.obj o.obj --config house.toml --report house.toml', '--report: .*house.toml.*--config'),
+    'a mesh on the options': ('box.obj house.toml --format obj --config house.toml', 'OUTPUT: .*--config'),
+    'states on linked options': ('box.obj o.obj --config house.toml --states options.csv', '--states: .*--config'),
+    'a report on materials': ('named.obj o.obj -d 0.1 --report named.mtl', "--report: .*named.mtl.*the input's own files"),
+    'a report on the second materials': ('named.obj o.obj -d 0.1 --report more.mtl', "--report: .*more.mtl.*the input's own"),
+    'states on materials with blanks': ('named.obj o.obj -d 0.1 --states two.csv', "--states: .*the input's own files"),
+    'a report on materials of an obstacle': ('box.obj o.obj -d 0.1 --obstacle named_wall.obj --report wall.mtl', "the input's own files"),
+    'a report on materials of what it is to fit': ('box.obj o.obj --fit named_wall.obj --clearance 0.1 --report wall.mtl',
+                                                 "the input's own files"),
+    'a report on materials, with layers': ('named.obj o.vtu --heights heights.txt --report named.mtl', "the input's own files"),
+    'a report on an image': ('box.gltf o.obj -d 0.1 --report red.png', "--report: .*red.png.*the input's own files"),
+    'a report on numbers beside': ('box.gltf o.obj -d 0.1 --report box.bin', "the input's own files"),
     'two surfaces': ('box.obj o_{d}.obj -d 0.1 -d 0.1 --mode iso', 'OUTPUT: .*differ'),
-    'the mesh of a scene': ('scene.json box.obj', "OUTPUT: .*the scene's file"),
-    'a report on the mesh of a scene': ('scene.json o.obj --report box.obj', "--report: .*the scene's file"),
+    'the mesh of a scene': ('scene.json box.obj', "OUTPUT: .*the input's own files"),
+    'a report on the mesh of a scene': ('scene.json o.obj --report box.obj', "--report: .*the input's own files"),
     'a scene': ('scene.json scene.json --format obj', 'OUTPUT: .*INPUT'),
     'a plan that never would be': ('box.obj o.obj -d 0.1 --report box.obj --dry-run', '--report: .*INPUT'),
     'fit to itself': ('box.obj o.obj --fit hard.obj --clearance 0.1', '--fit: .*input'),
@@ -93,6 +121,7 @@ CLASHES = {
     'check: obstacle': ('check box.obj box.obj --obstacle wall.obj --report wall.obj', '--report: .*--obstacle'),
     'check: faces': ('check box.obj box.obj --only faces=faces.txt --report faces.txt', '--report: .*--only'),
     'check: numbers': ('check box.obj box.obj --distance-from numbers.txt --report numbers.txt', '--report: .*--distance-from'),
+    'check: materials': ('check named.obj named.obj --report named.mtl', "--report: .*the input's own files"),
     'check: stream by another name': ('check box.obj box.obj --json --report /dev/stdout', '--report: .*--json'),
     'check: stream': ('check box.obj box.obj --json --report -', '--report: .*--json'),
 }
@@ -130,6 +159,22 @@ FINE = {
 def no_clash(place, line):
     set_up(place)
     place.ended_well(place.run(*line.split()), 0)
+
+
+# What cannot be written beside states of a check, which then stay as they were.
+@attack_each({name: name for name in ('/dev/full', 'nowhere/r.json', 'sub', 'locked/r.json')})
+def check_writes_all_or_nothing(place, report):
+    set_up(place)
+    place.file('s.csv', 'as before')
+    place.file('locked/x', '')
+    os.chmod(place.folder / 'locked', 0o500)
+    run = place.run('check', 'box.obj', 'box.obj', '--states', 's.csv', '--html', 'new.html', '--report', report)
+    os.chmod(place.folder / 'locked', 0o700)
+    if report == 'locked/r.json' and os.geteuid() == 0:
+        return  # who may write everywhere
+    place.refused(run, 4)
+    place.check((place.folder / 's.csv').read_bytes() == b'as before', 'expected the states as they were')
+    place.check('new.html' not in place.names(), 'expected no page')
 
 
 @attack

@@ -31,6 +31,8 @@ KINDS = {
     'foam': (['m.obj', 'constant/polyMesh', '--layers', '8', '--total-thickness', '5%', '--report', 'r.json'],
              ['r.json'] + ['constant/polyMesh/' + name for name in ('points', 'faces', 'owner', 'neighbour', 'boundary')]),
     'block': (['c.txt', 'o.vts', '--layers', '80', '--total-thickness', '0.1', '--structured'], ['o.vts']),
+    'check': (['check', 'm.obj', 'm.obj', '-d', '0', '--report', 'r.json', '--states', 's.csv', '--html', 'p.html'],
+              ['r.json', 's.csv', 'p.html']),
     'curves': (['c.txt', 'o.svg', '-d', '0.01', '--report', 'r.json'], ['o.svg', 'r.json']),
 }
 KILLS = 14  # of each kind

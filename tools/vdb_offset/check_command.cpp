@@ -176,9 +176,11 @@ void take_distances_of_meshes(CheckRequest& request) {
 }
 
 /// Refuses files to write that would replace one of those that are measured, or be mixed with the printed summary.
-void require_outputs_apart(const CheckRequest& request) {
+/// \param files_named those that files which were read name
+void require_outputs_apart(const CheckRequest& request, std::span<const std::string> files_named = {}) {
   const Request& made = request.made;
   std::vector<RunFile> read = surroundings_of(made), written;
+  for (const std::string& path : files_named) read.push_back({"the input's own files", path});
   read.push_back({"SOURCE", made.input});
   read.push_back({"OFFSET", made.output});
   if (!made.report.empty()) written.push_back({"--report", made.report});
@@ -319,6 +321,10 @@ CheckResult measure_meshes(const CheckRequest& request) {
   if (!source.file) throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);
   tell_remarks(offset);
+  std::vector<std::string> named = source.files_named;
+  for (const auto* const files : {&offset.files_beside, &offset.files_named})
+    named.insert(named.end(), files->begin(), files->end());
+  require_outputs_apart(request, named);
   const auto [positions, triangles] = find_in_offset(made, *source.file, offset);
   const Job job = resolve_options(made, source);
   CheckOptions options;
@@ -368,9 +374,13 @@ int run_check(int argc, const char* const* argv) {
   if (curves && request->axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
   if (!curves) take_distances_of_meshes(*request);
   require_outputs_apart(*request);
+  for (const std::string& path : {made.report, made.states, made.html})
+    if (!path.empty()) require_writable(path);
+  OutputFiles outputs(made.sync);
   const CheckResult result = curves ? measure_curves(*request) : measure_meshes(*request);
   const std::string json = check_json(result, made.input, made.output);
   if (!made.report.empty()) write_file(made.report, json);
+  outputs.commit(ignore_interrupts);
   const Printout out(is_standard_output(made.report) || is_standard_output(made.states) ||
                      is_standard_output(made.html));
   if (request->json) fmt::print(out, "{}", json);

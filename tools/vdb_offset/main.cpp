@@ -64,7 +64,7 @@ ExitCode run(const Request& request) {
   ProgressBar bar(!request.quiet);
   bar.show(Stage::Read, 0);
   const Source source = read_source(request, curves);
-  if (source.scene) require_apart(request, source.scene->mesh_path);
+  require_apart(request, source.files_named);
   Job job = resolve(request, source);
   job.options.progress = [&](Stage stage, double share) {
     bar.show(stage, share);

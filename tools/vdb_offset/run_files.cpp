@@ -125,25 +125,25 @@ void require_apart(std::span<const RunFile> read, std::span<const RunFile> writt
   }
 }
 
-void require_apart(const Request& request, const std::string& mesh_of_scene) {
+void require_apart(const Request& request, std::span<const std::string> files_named) {
   if (!request.fit.empty() && identity_of(request.fit, STDIN_FILENO) == identity_of(request.input, STDIN_FILENO))
     throw UsageError("--fit: expected a file other than the input, got " + shown(request.fit));
-  std::vector<RunFile> read = files_read(request);
-  add(read, "the scene's file", mesh_of_scene);
-  require_apart(read, files_written(request));
+  require_apart(files_read(request, files_named), files_written(request));
 }
 
 void require_apart(const Job& job) {
-  std::vector<RunFile> read = files_read(job.request);
+  std::vector<RunFile> read = files_read(job.request, job.source.files_named);
   for (const std::string& path : job.files_of_heights) add(read, "--heights", path);
   require_apart(read, job.request.layers ? written_with_layers(job.request, job.distances.size())
                                          : written_by(job.request, job.outputs));
 }
 
-std::vector<RunFile> files_read(const Request& request) {
+std::vector<RunFile> files_read(const Request& request, std::span<const std::string> files_named) {
   std::vector<RunFile> files = surroundings_of(request);
   files.insert(files.begin(), {"INPUT", request.input});
+  add(files, "--config", request.config);
   add(files, "--fit", request.fit);
+  for (const std::string& path : files_named) add(files, "the input's own files", path);
   if (request.inner) add_source_of(files, "--inner", *request.inner);
   if (!request.layers) return files;
   add(files, "--heights", request.layers->heights);

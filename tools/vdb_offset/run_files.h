@@ -20,9 +20,9 @@ struct RunFile {
 /// these are.
 void require_apart(std::span<const RunFile> read, std::span<const RunFile> written);
 
-/// Refuses them among all files that a request names. It is asked before anything is read; `mesh_of_scene` is
-/// the file that a scene names, once that is known.
-void require_apart(const Request& request, const std::string& mesh_of_scene = {});
+/// Refuses them among all files that a request names. It is asked before anything is read, and again once the files are
+/// known that those which are read name.
+void require_apart(const Request& request, std::span<const std::string> files_named = {});
 
 /// Refuses them among all files that a job reads and writes. It is asked before anything is written.
 void require_apart(const Job& job);
@@ -32,7 +32,7 @@ bool is_standard_output(const std::string& path);
 
 /// The files that a request names to be read, INPUT first, and to be written, as far as they are known without the
 /// input.
-std::vector<RunFile> files_read(const Request& request);
+std::vector<RunFile> files_read(const Request& request, std::span<const std::string> files_named = {});
 std::vector<RunFile> files_written(const Request& request);
 
 /// The files that options name which `check` has as well.

@@ -145,6 +145,12 @@ void use_unit(const Request& request, io::MeshFile& file) {
   file.unit_micrometres = given;
 }
 
+/// Adds the files that one which was read names.
+void list_named(const io::MeshFile& file, Source& source) {
+  for (const auto* const files : {&file.files_beside, &file.files_named})
+    source.files_named.insert(source.files_named.end(), files->begin(), files->end());
+}
+
 }  // namespace
 
 Source read_source(const Request& request, bool curves) {
@@ -159,20 +165,27 @@ Source read_source(const Request& request, bool curves) {
   }
   if (scene::is_scene(request.input)) source.scene = scene::read_scene(request.input);
   if (!source.scene) source.file = io::read_mesh(request.input, reading_of(request.input, request));
-  else if (!source.scene->mesh_path.empty())
+  else if (!source.scene->mesh_path.empty()) {
+    source.files_named.push_back(source.scene->mesh_path);
     source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request)});
-  if (source.file) use_unit(request, *source.file);
+  }
+  if (source.file) {
+    use_unit(request, *source.file);
+    list_named(*source.file, source);
+  }
   if (source.file && !request.quiet) tell_remarks(*source.file);
   for (const std::string& path : request.obstacles) {
     const io::MeshFile obstacle = io::read_mesh(path, reading_of(path, request));
     require_same_unit(source, "--obstacle", obstacle);
     if (!request.quiet) tell_remarks(obstacle);
+    list_named(obstacle, source);
     add(source.obstacles, obstacle.polygons);
   }
   if (!request.fit.empty()) {
     const io::MeshFile to_fit = io::read_mesh(request.fit, reading_of(request.fit, request));
     require_same_unit(source, "--fit", to_fit);
     if (!request.quiet) tell_remarks(to_fit);
+    list_named(to_fit, source);
     source.to_fit = to_fit.polygons;
   }
   return source;

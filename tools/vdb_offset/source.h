@@ -20,10 +20,11 @@ struct Source {
   std::optional<scene::Scene> scene;
   std::optional<io::MeshFile> file;
   std::optional<io::CurveFile> curves;
-  std::vector<OpenCurve> closed;    ///< Those of the curves that have been closed (see --close),
-  std::optional<Curves> as_closed;  ///< and all of them, if any were.
-  Polygons obstacles;               ///< From the command line; a scene's own are in the scene.
-  std::optional<Polygons> to_fit;   ///< From the command line, as well.
+  std::vector<OpenCurve> closed;         ///< Those of the curves that have been closed (see --close),
+  std::optional<Curves> as_closed;       ///< and all of them, if any were.
+  Polygons obstacles;                    ///< From the command line; a scene's own are in the scene.
+  std::optional<Polygons> to_fit;        ///< From the command line, as well.
+  std::vector<std::string> files_named;  ///< Files that those which were read name, read as well or not.
 
   PolygonView view() const {
     return file        ? file->polygons.view()

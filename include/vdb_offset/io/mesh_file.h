@@ -68,6 +68,7 @@ struct VDB_OFFSET_API MeshFile {
   std::size_t vertex_normals = 0;          ///< With a document: its normals; one for each vertex, or none.
   std::optional<double> unit_micrometres;  ///< The length of the unit of its coordinates, if the file tells it.
   std::vector<std::string> files_beside;   ///< Files that were read besides, as a .gltf names them.
+  std::vector<std::string> files_named;    ///< Files that it names and that were not read, as images and materials.
   /// Of a CAD model: its surface, which the polygons are a tessellation of.
   std::shared_ptr<const ExactSurface> exact;
   /// Vertices at equal positions are of objects that touch, and no two of one object are: not to be welded.

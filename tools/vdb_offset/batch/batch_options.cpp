@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The options of a batch, and which of those of an offset are passed on to each model.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <string>
 
 #include "batch/batch_request.h"
+#include "batch/remote/hosts.h"
 #include "request/offset_options.h"
 #include "request/option_values.h"
 
@@ -56,10 +59,22 @@ void declare_batch(CommandLine& line, BatchRequest& request, bool& reports) {
               [&request](const std::string& text) { request.jobs = parse_count("--jobs", text, 1, kMostJobs); });
   line.flag("--reports", "Keep the report of each model beside its output, as OUTPUT.json", reports);
   line.flag("--retry-failed", "Do models again that failed, too", request.retry_failed);
-  line.option("--sshlogin", "LIST",
-              "Work on these machines, as GNU parallel takes them; DIR, OUT and vdb_offset have the same paths there",
-              request.sshlogin);
-  line.option("--slurm", "PARTITION", "Work as an array of jobs of Slurm, in this partition", request.partition);
+  line.option(
+      "--sshlogin", "LIST",
+      "Work on these machines, by GNU parallel: [N/][user@]host[:port] with commas between, ':' is this one; DIR, "
+      "OUT and vdb_offset have the same paths there. Not in a file of options",
+      [&request](const std::string& text) {
+        require(are_hosts(text),
+                fmt::format("--sshlogin: expected machines as [N/][user@]host[:port] or ':' with commas "
+                            "between, got '{}'",
+                            text));
+        request.sshlogin = text;
+      });
+  line.option("--slurm", "PARTITION", "Work as an array of jobs of Slurm, in this partition",
+              [&request](const std::string& text) {
+                require(are_partitions(text), fmt::format("--slurm: expected the name of a partition, got '{}'", text));
+                request.partition = text;
+              });
 }
 
 }  // namespace
@@ -72,7 +87,7 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
   line.file("DIR", "Folder with models, in subfolders as well", request.folder);
   line.file("OUT", "Folder to write to; it is made if it is not there", request.out);
   declare_batch(line, request, reports);
-  line.add_config(options_of_distance());
+  line.add_config(options_of_distance(), {}, {"sshlogin"});
   line.hide_what_follows();
   declare_offset_options(line, draft);
   if (!line.parse(argc, argv)) return std::nullopt;

@@ -12,6 +12,7 @@
 
 #include "messages.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/output_files.h"
 
 namespace vdb_offset::tool {
@@ -27,9 +28,21 @@ std::string quoted(const std::string& text) {
   return field + '"';
 }
 
+/// With an apostrophe in front where a spreadsheet would take it for a formula, as a name that begins with '='.
+std::string no_formula(const std::string& text) {
+  return !text.empty() && std::string_view("=+-@\t\r\n").find(text[0]) != std::string_view::npos ? "'" + text : text;
+}
+
 /// A text as a field: in quotes where it holds what ends a field.
 std::string field(const std::string& text) {
-  return text.find_first_of(",\"\r\n") == std::string::npos ? text : quoted(text);
+  const std::string safe = no_formula(text);
+  return safe.find_first_of(",\"\r\n") == std::string::npos ? safe : quoted(safe);
+}
+
+/// A number is none, whatever its sign.
+std::string field_of_distance(const std::string& text) {
+  const std::size_t end = text.find_last_not_of("%abcdefghijklmnopqrstuvwxyz");
+  return decimal<double>(std::string_view(text).substr(0, end + 1)) ? text : field(text);
 }
 
 }  // namespace
@@ -39,10 +52,11 @@ std::string rows_of(const Model& model, const Record& record) {
   const std::vector<Record::Figures> none(1);
   std::string rows;
   for (const Record::Figures& figures : record.figures.empty() ? none : record.figures)
-    rows += fmt::format("{},{},{:.3f},{:.0f},{},{},{},{},{},{},{}\n", quoted(as_text(model.path)),
-                        field(figures.distance), ending.seconds, static_cast<double>(ending.peak_memory) / 1048576.0,
-                        figures.vertices, figures.share_reached, figures.mean_error, figures.within_1_percent,
-                        figures.certified, ending.exit_code, field(ending.message));
+    rows += fmt::format("{},{},{:.3f},{:.0f},{},{},{},{},{},{},{}\n", quoted(no_formula(as_text(model.path))),
+                        field_of_distance(figures.distance), ending.seconds,
+                        static_cast<double>(ending.peak_memory) / 1048576.0, figures.vertices, figures.share_reached,
+                        figures.mean_error, figures.within_1_percent, figures.certified, ending.exit_code,
+                        field(ending.message));
   return rows;
 }
 

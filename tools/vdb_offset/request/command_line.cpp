@@ -86,9 +86,11 @@ void CommandLine::place(CLI::Option* option) {
   hidden_options_.push_back(option);
 }
 
-void CommandLine::add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over) {
+void CommandLine::add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over,
+                             std::vector<std::string> kept_out) {
   alternatives_ = std::move(alternatives);
   passed_over_ = std::move(passed_over);
+  kept_out_ = std::move(kept_out);
   app_->add_option("--config", config_,
                    "Take options from FILE, too, in TOML by their long names, as in 'distance = \"1%\"' and 'strict = "
                    "true'; what is given here counts instead")
@@ -118,6 +120,9 @@ std::vector<std::string> CommandLine::words_of_config() const {
                                            [this](const std::string& name) { return has(("--" + name).c_str()); });
   std::vector<std::string> words;
   for (const ConfigEntry& entry : read_config(config_)) {
+    require(!is_among(kept_out_, entry.name),
+            fmt::format("{}: {}: expected on the command line alone, as a file may come from somebody else",
+                        entry.place, entry.name));
     if (is_among(passed_over_, entry.name) || (has_alternative && is_among(alternatives_, entry.name))) continue;
     const CLI::Option* const option = app_->get_option_no_throw("--" + entry.name);
     const bool is_known = option && option->get_positional() == false && entry.name != "config" &&

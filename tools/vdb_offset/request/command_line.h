@@ -37,8 +37,10 @@ class CommandLine {
   /// -V and --version, which print `version`.
   void add_version(const std::string& version);
   /// --config, a file with values of options that the line does not have. One of `alternatives` on the line counts
-  /// instead of all of them in the file. Names that are `passed_over` are options of other commands.
-  void add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over = {});
+  /// instead of all of them in the file. Names that are `passed_over` are options of other commands. A file that has a
+  /// name that is `kept_out` is refused.
+  void add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over = {},
+                  std::vector<std::string> kept_out = {});
   /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name;
   /// where it is not given, the file `input`, which other options name, may tell its own.
   void add_unit(std::string& unit, const std::string& input);
@@ -59,6 +61,8 @@ class CommandLine {
 
   /// Whether an option was given, by its long name.
   bool has(const char* option) const;
+  /// The file of --config; empty if none was given.
+  const std::string& config() const { return config_; }
   /// The hidden options that were given, those with several values once for each.
   std::vector<GivenOption> given_hidden() const;
 
@@ -81,7 +85,7 @@ class CommandLine {
   std::unique_ptr<CLI::App> app_;
   const char* help_;
   std::string config_;
-  std::vector<std::string> alternatives_, passed_over_;
+  std::vector<std::string> alternatives_, passed_over_, kept_out_;
   const std::string *unit_ = nullptr, *measured_ = nullptr;
   bool hidden_ = false;
   std::vector<const CLI::Option*> hidden_options_;

@@ -19,6 +19,8 @@ namespace {
 
 // Bytes; options by hand are less, and a file of another kind is not to be read to its end.
 constexpr std::size_t kLargestConfig = std::size_t{1} << 20;
+// Bytes of a key; no option has so long a name.
+constexpr std::size_t kLongestKey = 64;
 
 /// \throw ReadError, UsageError
 std::string read_text(const std::string& path) {
@@ -30,6 +32,26 @@ std::string read_text(const std::string& path) {
   require(text.size() <= kLargestConfig,
           fmt::format("{}: expected a file of options (TOML), got more than {} bytes", path, kLargestConfig));
   return text;
+}
+
+/// Refuses keys of many parts, with dots between, before they are parsed: toml++ goes one level deeper for each. What
+/// is in quotes is one part, whatever it holds.
+/// \throw UsageError
+void require_shallow_keys(std::string_view text, const std::string& path) {
+  constexpr std::size_t kMostParts = 64;
+  std::size_t parts = 1, line = 1;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    line += c == '\n';
+    if (c == '"' || c == '\'') {
+      for (++i; i < text.size() && text[i] != c && text[i] != '\n'; ++i) i += c == '"' && text[i] == '\\';
+      line += i < text.size() && text[i] == '\n';
+    } else if (std::string_view("\n,=[]{}#").find(c) != std::string_view::npos) {
+      parts = 1;
+    } else if (c == '.' && ++parts > kMostParts) {
+      throw UsageError(fmt::format("{}:{}: expected TOML: a key of at most {} parts", path, line, kMostParts));
+    }
+  }
 }
 
 std::string place_of(const std::string& path, const toml::source_region& source) {
@@ -61,10 +83,16 @@ ConfigEntry entry_of(std::string_view name, const toml::node& node, const std::s
 
 std::vector<ConfigEntry> read_config(const std::string& path) {
   const std::string text = read_text(path);
+  require_shallow_keys(text, path);
   std::vector<ConfigEntry> entries;
   try {
     const toml::table table = toml::parse(text);
-    for (const auto& [key, node] : table) entries.push_back(entry_of(key.str(), node, path));
+    for (const auto& [key, node] : table) {
+      require(key.str().size() <= kLongestKey,
+              fmt::format("{}: expected the long name of an option, got one of {} bytes", place_of(path, node.source()),
+                          key.str().size()));
+      entries.push_back(entry_of(key.str(), node, path));
+    }
   } catch (const toml::parse_error& error) {
     throw UsageError(fmt::format("{}: expected TOML: {}", place_of(path, error.source()), error.description()));
   }

@@ -419,12 +419,14 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
             draft.request.input);
   line.file("OUTPUT", "Mesh to write, by extension; may be the input; '-' is standard output", draft.request.output);
-  line.add_config(options_of_distance(), {"output", "models", "jobs", "reports", "retry-failed", "sshlogin", "slurm"});
+  line.add_config(options_of_distance(), {"output", "models", "jobs", "reports", "retry-failed", "slurm"},
+                  {"sshlogin"});
   declare_offset_options(line, draft);
   if (!line.parse(argc, argv)) return std::nullopt;
   require_together(line, draft.is_iso);
   complete(line, draft);
   draft.request.command = as_typed(argc, argv);
+  draft.request.config = line.config();
   require_sound(draft.request);
   return draft.request;
 }

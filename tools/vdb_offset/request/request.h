@@ -69,6 +69,7 @@ struct ToleranceRequest {
 /// of the command line alone, as no file has been opened for it; resolve() makes a Job of it.
 struct Request {
   std::string input, output;
+  std::string config;                          ///< The file that options were taken from, too; empty: none.
   std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own, and for layers.
   const char* distance_option = "--distance";  ///< The option that they were given with.
   std::vector<PartDistance> distances_of;      ///< Of parts; where several name a face, the last counts.

@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "batch/remote/shell_words.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <fstream>
+#include <string_view>
 
 #include "batch/model_run.h"
 #include "batch/process/child.h"
 #include "batch/remote/plan.h"
 #include "messages.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset::tool {
-std::string in_quotes(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'') quoted += "'\\''";
-    else quoted += c;
-  }
-  return quoted + "'";
+
+std::string in_quotes(const std::string& path) {
+  const bool is_plain = std::all_of(path.begin(), path.end(), [](char c) {
+    return std::string_view("'\\!").find(c) == std::string_view::npos && static_cast<unsigned char>(c) >= ' ' &&
+           c != '\x7f';
+  });
+  if (!is_plain)
+    throw InvalidInput(
+        fmt::format("{}: expected a path without quotes, backslashes, exclamation marks and line breaks, "
+                    "which shells of other machines may take otherwise",
+                    readable(path)));
+  return "'" + path + "'";
 }
 
 std::string words_of_task(const std::string& out) {

@@ -7,8 +7,9 @@
 
 namespace vdb_offset::tool {
 
-/// A text as one word of a shell.
-std::string in_quotes(const std::string& text);
+/// A path as one word of whatever shell a user has on another machine: of sh, csh and fish, which agree about what is
+/// in single quotes but for few characters. \throw InvalidInput for a path with one of these
+std::string in_quotes(const std::string& path);
 
 /// The call of a task, for a shell, without its number.
 std::string words_of_task(const std::string& out);

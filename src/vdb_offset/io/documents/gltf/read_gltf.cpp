@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "vdb_offset/io/documents/gltf/json.h"
 #include "vdb_offset/io/documents/gltf/mesh_builder.h"
 #include "vdb_offset/io/documents/gltf/scene.h"
+#include "vdb_offset/io/documents/gltf/uri.h"
 
 namespace vdb_offset::io {
 namespace gltf {
@@ -48,10 +50,13 @@ void require_plain_geometry(const JsonValue& root) {
         required[i].fail("geometry as plain floats", fmt::format("{}, which is not supported", name));
 }
 
-/// Files of numbers that lie beside it.
+/// Files of numbers that lie beside it, and of images.
 void list_files_beside(const Contents& contents, MeshFile& file) {
   for (const Buffer& buffer : contents.buffers)
     if (buffer.in == Buffer::In::File) file.files_beside.push_back(buffer.path);
+  for (const std::string& uri : contents.image_uris)
+    if (const auto path = is_data_uri(uri) ? std::nullopt : relative_path(uri))
+      file.files_named.push_back((std::filesystem::path(file.path).parent_path() / *path).string());
 }
 
 void list_extras(const JsonValue& root, const MeshBuilder& builder, MeshFile& file) {

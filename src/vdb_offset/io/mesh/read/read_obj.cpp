@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
+#include <sstream>
 #include <tuple>
+#include <utility>
 
 #include "vdb_offset/base/memory.h"
 #include "vdb_offset/error.h"
@@ -98,8 +101,9 @@ class RunParser {
         to_(to),
         all_(all) {}
 
-  /// Parses lines from `begin` to `end`. Returns what they hold besides positions and faces, as bits.
-  unsigned run(std::size_t begin, std::size_t end) {
+  /// Parses lines from `begin` to `end`. Returns what they hold besides positions and faces, as bits, and what they
+  /// name as files of materials.
+  std::pair<unsigned, std::vector<std::string>> run(std::size_t begin, std::size_t end) {
     for_each_obj_line(file_.path, text_, begin, end, [&](const ObjLine& line) {
       if (line.is("v")) vertex(line);
       else if (line.is("f")) face(line);
@@ -107,7 +111,7 @@ class RunParser {
       else if (!line.keyword.empty()) other(line);
     });
     if (!(next_ == to_)) changed();
-    return extras_;
+    return {extras_, std::move(libraries_)};
   }
 
  private:
@@ -240,6 +244,7 @@ class RunParser {
     else if (keyword == "g" || keyword == "o") extras_ |= kGroups;
     else if (keyword == "s") extras_ |= kSmooth;
     else extras_ |= kOther;
+    if (keyword == "mtllib") libraries_.push_back(rest_of_line(line));
   }
 
   const MeshFile& file_;
@@ -248,7 +253,19 @@ class RunParser {
   Arrays& arrays_;
   Counts next_, to_, all_;
   unsigned extras_ = 0;
+  std::vector<std::string> libraries_;  // files of materials
 };
+
+/// Adds the files that lines with `mtllib` name: one each, or several with blanks between.
+void add_libraries(MeshFile& file, const std::vector<std::string>& lines) {
+  const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
+  for (const std::string& line : lines) {
+    std::istringstream words(line);
+    file.files_named.push_back((folder / line).string());
+    for (std::string word; words >> word;)
+      if (word != line) file.files_named.push_back((folder / word).string());
+  }
+}
 
 /// What there is before each run, and in the whole file.
 std::vector<Counts> count(const MeshFile& file, const std::vector<std::size_t>& cuts) {
@@ -288,7 +305,7 @@ void parse_obj(MeshFile& file) {
   const Counts& all = before.back();
   Arrays arrays = allocate(file, all);
   std::vector<std::exception_ptr> failed(cuts.size());
-  std::vector<unsigned> extras(cuts.size(), 0);
+  std::vector<std::pair<unsigned, std::vector<std::string>>> extras(cuts.size());
   tbb::parallel_for(std::size_t{1}, cuts.size(), [&](std::size_t run) {
     try {
       extras[run] = RunParser(file, arrays, before[run - 1], before[run], all).run(cuts[run - 1], cuts[run]);
@@ -302,7 +319,10 @@ void parse_obj(MeshFile& file) {
   file.position_at = ByteOffsets(std::move(arrays.position_at));
   file.normal_at = ByteOffsets(std::move(arrays.normal_at));
   unsigned held = 0;
-  for (const unsigned extra : extras) held |= extra;
+  for (const auto& [extra, libraries] : extras) {
+    held |= extra;
+    add_libraries(file, libraries);
+  }
   for (std::size_t i = 0; i < std::size(kExtraNames); ++i)
     if (held >> i & 1) file.extras.emplace_back(kExtraNames[i]);
   for (const auto& [named, there, remark] :
