@@ -86,7 +86,7 @@ struct CadReading {
   double deflection = 0, deflection_share = 2e-4;
   double least_share = 0, most_share = 1;  ///< The deflection is between these shares of the diagonal.
   double angle_degrees = 15;               ///< The most angle between a face's normals at neighbouring vertices.
-  double seconds = 300;  ///< How long OpenCASCADE may take for a file, and for each question about it.
+  double seconds = 300;  ///< How long OpenCASCADE may take for a file, all questions about it included.
 };
 
 struct ReadOptions {

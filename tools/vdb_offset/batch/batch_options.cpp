@@ -94,6 +94,8 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
   for (GivenOption& option : line.given_hidden())
     if (std::find(std::begin(kOfTheBatch), std::end(kOfTheBatch), option.name) == std::end(kOfTheBatch))
       request.each.push_back(std::move(option));
+  // A damaged model is not to hold up the others.
+  if (!line.has("--cad-seconds")) request.each.push_back({"--cad-seconds", "60"});
   if (reports) {
     require(!line.has("--report"), "--reports: expected to be given without --report, which names the same files");
     request.each.push_back({"--report", "{model}{ending}.json"});

@@ -262,7 +262,7 @@ void declare_cad(CommandLine& line, Request& request) {
               [&request](const std::string& text) {
                 request.angle = parse_number("--angle", text, "a number above 0, up to 90", 0, 90);
               });
-  line.option("--cad-seconds", "S", "Of CAD models: how long OpenCASCADE may take for one [300]",
+  line.option("--cad-seconds", "S", "Of CAD models: how long OpenCASCADE may take for one in all [300; in a batch 60]",
               [&request](const std::string& text) {
                 request.cad_seconds = parse_number("--cad-seconds", text, "a number above 0", 0, kAny);
               });

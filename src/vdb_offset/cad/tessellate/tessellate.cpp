@@ -19,7 +19,8 @@ namespace {
 constexpr int kSamples = 4;            // steps across a face, for the model's size
 constexpr double kLeast = 2e-7;        // OpenCASCADE refuses what is below its own tolerance of 1e-7
 constexpr std::size_t kMostNamed = 5;  // faces that a remark names
-constexpr double kLeastShare = 1e-7;   // of the diagonal: a finer deflection is refused as numberless triangles
+constexpr double kFarOff = 10;        // deflections: triangles that are farther off than that stand for another surface
+constexpr double kLeastShare = 1e-7;  // of the diagonal: a finer deflection is refused as numberless triangles
 
 double diagonal_of(const CadModel& model) {
   Bnd_Box box;
@@ -130,6 +131,17 @@ void tell(const Work& work, double deflection, std::vector<std::string>& remarks
   remarks.emplace_back(text);
 }
 
+/// \throw InvalidCad for triangles that have little to do with their faces, as of a damaged file
+void require_near(double farthest, double deflection) {
+  if (farthest <= kFarOff * deflection) return;
+  char text[200];
+  std::snprintf(text, sizeof(text),
+                "expected triangles within %.3g of their faces, got some %.3g off, as of a damaged file (a larger "
+                "--deflection allows more)",
+                deflection, farthest);
+  throw InvalidCad(text);
+}
+
 double deflection_of(const io::CadFineness& fineness, double diagonal) {
   const double asked = fineness.deflection > 0 ? fineness.deflection : fineness.deflection_of_diagonal * diagonal;
   const double wanted = std::clamp(asked, fineness.least_of_diagonal * diagonal, fineness.most_of_diagonal * diagonal);
@@ -160,6 +172,7 @@ io::CadMesh tessellate(CadModel& model, const io::CadFineness& fineness) {
   result.remarks = model.remarks;
   tell(work, deflection, result.remarks);
   if (result.triangles.empty()) throw InvalidCad("expected faces that can be tessellated, got none");
+  require_near(work.farthest, deflection);
   if (!work.holes.empty())
     throw InvalidCad("expected faces that can be tessellated, got none of " + names_of(work.holes) +
                      ", which would be holes");

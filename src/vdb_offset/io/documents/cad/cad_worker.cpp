@@ -81,11 +81,12 @@ struct CadWorker::State {
   double seconds;
   std::uint64_t most_memory;
   std::optional<WorkerProcess> process;
+  std::chrono::steady_clock::duration spent{};  // of those seconds, with all that was asked so far
 
   Deadline deadline() const {
     constexpr double kForever = 1e8;  // seconds, three years; more would not be counted
     if (!(seconds < kForever)) return std::nullopt;
-    return std::chrono::steady_clock::now() +
+    return std::chrono::steady_clock::now() - spent +
            std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
   }
 
@@ -106,8 +107,9 @@ struct CadWorker::State {
 
   [[noreturn]] void fail_by_time() {
     process.reset();
-    throw InvalidInput(fmt::format(
-        "{}: expected a CAD file, got one that takes OpenCASCADE longer than {} s (--cad-seconds)", path, seconds));
+    throw InvalidInput(
+        fmt::format("{}: expected a CAD file, got one that takes OpenCASCADE longer than {} s in all (--cad-seconds)",
+                    path, seconds));
   }
 
   void start(const OpenFile& file, const Deadline& until) {
@@ -164,10 +166,12 @@ CadWorker::CadWorker(std::string path, std::string_view bytes, std::string_view 
     : state_(std::make_unique<State>(std::move(path), seconds, most_memory)) {
   const std::string name = format_of(state_->path, format);
   require_least_memory(state_->path, bytes.size(), most_memory);
+  const auto begun = std::chrono::steady_clock::now();
   const Deadline until = state_->deadline();
   state_->start(file_of(state_->path, bytes), until);
   const ReadCad read{fmt::format("/proc/self/fd/{}", kWorkerModel), name, fineness, most_memory};
   const std::string reply = state_->ask(CadRequest::Mesh, pack(read), until);
+  state_->spent += std::chrono::steady_clock::now() - begun;
   try {
     mesh_ = unpack_mesh(reply);
   } catch (const BadMessage& bad) {
@@ -180,7 +184,10 @@ CadWorker::CadWorker(CadWorker&&) noexcept = default;
 CadWorker& CadWorker::operator=(CadWorker&&) noexcept = default;
 
 std::string CadWorker::request(CadRequest kind, std::string_view payload) {
-  return state_->ask(kind, payload, state_->deadline());
+  const auto begun = std::chrono::steady_clock::now();
+  std::string reply = state_->ask(kind, payload, state_->deadline());
+  state_->spent += std::chrono::steady_clock::now() - begun;
+  return reply;
 }
 
 std::vector<double> CadWorker::distance_errors(std::span<const CadPoint> points) {
