@@ -62,15 +62,17 @@ class BoxTree {
   template <class IsIt>
   bool any_overlap_beside(std::size_t begin, std::size_t end, const FloatBox& box, IsIt&& is_it) const;
 
+  /// Calls is_it(i) for boxes of a level that meet `box` until it returns true, but not for what is in children for
+  /// which `counts(level, child)` does not hold. Returns whether it did.
+  template <class Counts, class IsIt>
+  bool any_overlap_of(const FloatBox& box, std::size_t of_level, Counts&& counts, IsIt&& is_it) const;
+
   /// Which of eight siblings meet a box, as bits.
   static unsigned overlaps(const Siblings& siblings, const FloatBox& box);
   static FloatBox box(const Siblings& siblings, int i);
   static FloatBox around(const Siblings& siblings);
 
  private:
-  template <class Counts, class IsIt>
-  bool any_overlap_of(const FloatBox& box, std::size_t of_level, Counts&& counts, IsIt&& is_it) const;
-
   std::vector<std::vector<Siblings>> levels_;
 };
 
@@ -117,7 +119,6 @@ bool BoxTree::any_overlap_beside(std::size_t begin, std::size_t end, const Float
   return any_overlap_of(box, 0, counts, is_it);
 }
 
-/// Looks only at children for which counts(level, child) holds.
 template <class Counts, class IsIt>
 bool BoxTree::any_overlap_of(const FloatBox& box, std::size_t of_level, Counts&& counts, IsIt&& is_it) const {
   struct Node {

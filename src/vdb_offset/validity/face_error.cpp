@@ -60,8 +60,9 @@ std::array<double, 3> shares_of(std::size_t sample) {
 /// two faces.
 std::vector<std::uint8_t> vertices_at_corners(const ConstrainedSurface& constrained) {
   const Surface& surface = constrained.moving_part.surface();
-  std::vector<std::uint8_t> sharp(constrained.on_crease.begin(), constrained.on_crease.end());
-  if (sharp.empty()) sharp = vertices_on_creases(surface);
+  const auto& known = constrained.on_crease;
+  std::vector<std::uint8_t> sharp =
+      known.empty() ? vertices_on_creases(surface) : std::vector<std::uint8_t>(known.begin(), known.end());
   for (std::uint32_t h = 0; h < surface.next_around_edge.size(); ++h)
     if (surface.next_around_edge[surface.next_around_edge[h]] != h) sharp[surface.from(h)] = sharp[surface.to(h)] = 1;
   return sharp;

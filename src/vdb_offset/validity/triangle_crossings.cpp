@@ -64,46 +64,14 @@ struct TestedPair {
   }
 };
 
-// Share of the product of lengths by which rounding may change a dot product. Reasoned: differences of coordinates are
-// exact to 2^-53 of themselves; a dot product of three with a cross product, or with a sum of such differences, is off
-// by far less than this.
-constexpr double kCrossingRounding = 1e-14;
-
-/// A number that is no less than a vector's length, and found faster.
-double no_shorter(const Vec3d& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
-
-/// A triangle's plane, which tells most of the triangles that do not meet it.
-class Plane {
- public:
-  explicit Plane(const std::array<Vec3d, 3>& triangle) : point_(triangle[0]) {
-    const Vec3d ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
-    normal_ = ab.cross(ac);
-    size_ = kCrossingRounding * no_shorter(ab) * no_shorter(ac);
-  }
-
-  /// 1 for a point that is clearly above the plane, -1 for one that is clearly below, 0 for all others.
-  int side(const Vec3d& x) const {
-    const Vec3d to = x - point_;
-    const double height = normal_.dot(to), margin = size_ * no_shorter(to);
-    return static_cast<int>(height > margin) - static_cast<int>(height < -margin);
-  }
-
-  /// True if the triangle clearly has an area.
-  bool is_clear() const { return std::max({std::abs(normal_[0]), std::abs(normal_[1]), std::abs(normal_[2])}) > size_; }
-
- private:
-  Vec3d point_, normal_;
-  double size_;
-};
-
 /// True if a triangle, with no corner in the plane, lies clearly on one side of it.
-bool misses(const Plane& plane, const std::array<Vec3d, 3>& triangle) {
+bool misses(const TrianglePlane& plane, const std::array<Vec3d, 3>& triangle) {
   const int side = plane.side(triangle[0]);
   return side != 0 && plane.side(triangle[1]) == side && plane.side(triangle[2]) == side;
 }
 
 /// True if the corners of a triangle after those that are shared lie clearly on one side of the plane of the other.
-bool on_one_side(const Plane& plane, const std::array<Vec3d, 3>& b, int shared) {
+bool on_one_side(const TrianglePlane& plane, const std::array<Vec3d, 3>& b, int shared) {
   int sum = 0;
   for (auto k = static_cast<std::size_t>(shared); k < 3; ++k) sum += plane.side(b[k]);
   return std::abs(sum) == 3 - shared;
@@ -111,7 +79,7 @@ bool on_one_side(const Plane& plane, const std::array<Vec3d, 3>& b, int shared) 
 
 /// True if the corners of a surface's triangle t that triangle s does not have lie clearly on one side of the plane of
 /// s.
-bool on_one_side(const Plane& plane, const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s,
+bool on_one_side(const TrianglePlane& plane, const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s,
                  std::uint32_t t) {
   const auto& [a, b, c] = surface.triangles[s];
   int sum = 0, corners = 0;
@@ -143,7 +111,7 @@ bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b
 /// rounding is left to the exact predicates.
 bool meet(const TestedPair& pair) {
   if (pair.shared == 3) return false;  // the same triangle twice, or a sheet's two sides
-  const Plane plane_of_a(pair.a), plane_of_b(pair.b);
+  const TrianglePlane plane_of_a(pair.a), plane_of_b(pair.b);
   if (on_one_side(plane_of_a, pair.b, pair.shared) || on_one_side(plane_of_b, pair.a, pair.shared)) return false;
   if (pair.shared == 1 && on_either_side(pair.a, pair.b)) return false;
   std::array<Point, 3> a, b;
@@ -187,6 +155,12 @@ CrossingFinder::CrossingFinder(const Surface& surface, std::span<const Vec3d> po
 
 void CrossingFinder::build() {
   tree_.build(surface_.triangles.size(), [&](std::size_t t) { return box_of(corners(t, positions_)); });
+  fans_.build(surface_, positions_, tree_.levels().size());
+  planes_.clear();
+  if (fans_.empty()) return;
+  planes_.resize(surface_.triangles.size());
+  for_each_index(
+      planes_.size(), [&](std::size_t t) { planes_[t] = TrianglePlane(corners(t, positions_)); }, 256);
 }
 
 void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
@@ -195,7 +169,12 @@ void CrossingFinder::update(std::span<const std::uint32_t> triangles) {
   updated_.assign(triangles.begin(), triangles.end());
   for (const auto t : updated_) is_updated_[t] = 1;
   if (triangles.size() == surface_.triangles.size()) build();
-  else tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
+  else {
+    tree_.refit(triangles, [&](std::size_t t) { return box_of(corners(t, positions_)); });
+    fans_.refit(triangles);
+    if (!planes_.empty())
+      for (const auto t : triangles) planes_[t] = TrianglePlane(corners(t, positions_));
+  }
 }
 
 std::array<Vec3d, 3> CrossingFinder::corners(std::size_t t, std::span<const Vec3d> positions) const {
@@ -216,20 +195,41 @@ FloatBox CrossingFinder::box_of(const std::array<Vec3d, 3>& corners) const {
   return box;
 }
 
+/// Where fans are large, whether all of some triangles are clearly on one side of the box of a child of the tree, as
+/// long ones are of others that their boxes meet.
+bool CrossingFinder::miss(std::span<const std::uint32_t> triangles, std::size_t level, std::size_t child) const {
+  if (planes_.empty()) return false;
+  const FloatBox box =
+      BoxTree::box(tree_.levels()[level][child / BoxTree::kWidth], static_cast<int>(child % BoxTree::kWidth));
+  return std::all_of(triangles.begin(), triangles.end(),
+                     [&](std::uint32_t t) { return planes_[t].misses(box, surface_.origin); });
+}
+
+/// Which triangles of a block may meet what is in a box, as bits: by their planes where these are known.
+unsigned CrossingFinder::may_meet(std::size_t block, const FloatBox& box) const {
+  unsigned may = (1u << BoxTree::kWidth) - 1;
+  for (std::size_t t = block * BoxTree::kWidth; t < std::min(planes_.size(), (block + 1) * BoxTree::kWidth); ++t)
+    if (planes_[t].misses(box, surface_.origin)) may &= ~(1u << t % BoxTree::kWidth);
+  return may;
+}
+
 /// Calls visit(s, t), which says whether that is enough, for the pairs that meet of a block's triangles and those that
 /// follow. Few of a block's triangles come near the box around another.
 template <class Takes, class Visit>
 void CrossingFinder::for_each_pair_of(std::size_t block, Takes&& takes, Visit&& visit) const {
   const auto& blocks = tree_.levels().front();
   constexpr std::uint32_t kWidth = BoxTree::kWidth;
+  const FloatBox all = BoxTree::around(blocks[block]);
   const auto compare = [&](std::size_t other, unsigned near) {
+    const unsigned may = may_meet(other, all);
     for (; near != 0; near &= near - 1) {
       const int i = std::countr_zero(near);
       const auto s = static_cast<std::uint32_t>(block) * kWidth + static_cast<std::uint32_t>(i);
       unsigned meets = BoxTree::overlaps(blocks[other], BoxTree::box(blocks[block], i));
       if (block == other) meets &= ~0u << (i + 1);
+      meets &= may;
       if (meets == 0 || !takes(s)) continue;
-      const Plane plane(corners(s, positions_));
+      const TrianglePlane plane(corners(s, positions_));
       for (; meets != 0; meets &= meets - 1) {
         const auto t = static_cast<std::uint32_t>(other) * kWidth + static_cast<std::uint32_t>(std::countr_zero(meets));
         if (!on_one_side(plane, surface_, positions_, s, t) && takes(t) && meet(surface_, positions_, s, t) &&
@@ -244,14 +244,20 @@ void CrossingFinder::for_each_pair_of(std::size_t block, Takes&& takes, Visit&& 
     compare(block, kAll);
     return;
   }
-  tree_.any_overlap(
-      BoxTree::around(blocks[block]),
+  const FanBoxes::Node* const fan = fans_.of_block(block);
+  std::vector<std::uint32_t> own;
+  for (std::size_t t = block * kWidth; t < std::min(planes_.size(), (block + 1) * kWidth); ++t)
+    own.push_back(static_cast<std::uint32_t>(t));
+  tree_.any_overlap_of(
+      all, 1,
+      [&](std::size_t level, std::size_t child) {
+        return !(fan && fans_.are_apart(*fan, level, child)) && !miss(own, level, child);
+      },
       [&](std::size_t other) {
         if (other < block) return false;
         const FloatBox box = BoxTree::box(tree_.levels()[1][other / kWidth], static_cast<int>(other % kWidth));
         return compare(other, other == block ? kAll : BoxTree::overlaps(blocks[block], box));
-      },
-      1);
+      });
 }
 
 std::vector<TrianglePair> CrossingFinder::all(const std::function<bool(std::uint32_t)>& matters) const {
@@ -292,8 +298,12 @@ SelfCrossings CrossingFinder::listed() const {
 
 bool CrossingFinder::meets_any(std::uint32_t t) const {
   const std::array<Vec3d, 3> here = corners(t, positions_);
-  const Plane plane(here);
-  return tree_.any_overlap(box_of(here), [&](std::size_t child) {
+  const TrianglePlane plane(here);
+  const FanBoxes::Node* const fan = fans_.of_block(t / BoxTree::kWidth);
+  const auto counts = [&](std::size_t level, std::size_t child) {
+    return !fan || !fans_.are_apart(*fan, level, child);
+  };
+  return tree_.any_overlap_of(box_of(here), 0, counts, [&](std::size_t child) {
     const auto other = static_cast<std::uint32_t>(child);
     if (other == t || on_one_side(plane, surface_, positions_, t, other)) return false;
     const TrianglePair pair = std::minmax(t, other);
@@ -317,7 +327,7 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
   struct Open {
     std::uint32_t triangle;
     FloatBox box;
-    Plane plane;
+    TrianglePlane plane;
   };
   std::array<std::optional<Open>, BoxTree::kWidth> open;
   std::size_t count = 0;
@@ -325,14 +335,15 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
   for (const auto t : run) {
     if (!takes(t)) continue;
     const std::array<Vec3d, 3> here = corners(t, positions_);
-    open[count].emplace(Open{t, box_of(here), Plane(here)});
+    open[count].emplace(Open{t, box_of(here), TrianglePlane(here)});
     all.include(open[count++]->box);
   }
   const auto search = [&](std::size_t block) {
+    const unsigned may = may_meet(block, all);
     for (std::size_t i = 0; i < count;) {
       const auto& [t, box, plane] = *open[i];
       bool found = false;
-      for (unsigned near = BoxTree::overlaps(tree_.levels().front()[block], box); near != 0 && !found;
+      for (unsigned near = BoxTree::overlaps(tree_.levels().front()[block], box) & may; near != 0 && !found;
            near &= near - 1) {
         const auto other =
             static_cast<std::uint32_t>(block) * BoxTree::kWidth + static_cast<std::uint32_t>(std::countr_zero(near));
@@ -345,7 +356,15 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
   };
   if (count == 0) return;
   if (tree_.levels().size() == 1) search(0);
-  else tree_.any_overlap(all, search, 1);
+  else {
+    const FanBoxes::Node* const fan = fans_.of_block(run.front() / BoxTree::kWidth);
+    tree_.any_overlap_of(
+        all, 1,
+        [&](std::size_t level, std::size_t child) {
+          return !(fan && fans_.are_apart(*fan, level, child)) && !miss(run, level, child);
+        },
+        search);
+  }
 }
 
 std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(std::uint32_t)>& matters) const {
@@ -353,7 +372,7 @@ std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(st
   const auto may_take = [&](std::uint32_t t) { return !matters || matters(t); };
   return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
     any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), may_take,
-             [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
+             [&](std::uint32_t t, std::uint32_t other, const TrianglePlane& plane) {
                if (other < t && is_updated_[other]) return false;
                if (on_one_side(plane, surface_, positions_, t, other) || !may_take(other)) return false;
                const TrianglePair pair = std::minmax(t, other);
@@ -372,7 +391,7 @@ std::vector<TrianglePair> CrossingFinder::one_of_each_updated(
   const auto find_one_of_each = [&](auto&& takes, auto&& may_meet) {
     return find_in_parallel(runs.size() - 1, 4, [&](std::size_t r, std::vector<TrianglePair>& found) {
       any_near(std::span(updated_).subspan(runs[r], runs[r + 1] - runs[r]), takes,
-               [&](std::uint32_t t, std::uint32_t other, const Plane& plane) {
+               [&](std::uint32_t t, std::uint32_t other, const TrianglePlane& plane) {
                  if (!may_meet(t, other) || on_one_side(plane, surface_, positions_, t, other) || !may_take(other))
                    return false;
                  const TrianglePair pair = std::minmax(t, other);
@@ -402,7 +421,7 @@ bool CrossingFinder::go_through(const TrianglePair& pair) const {
 
 std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> positions) const {
   std::vector<std::uint32_t> met;
-  const Plane plane(corners(triangle, positions));
+  const TrianglePlane plane(corners(triangle, positions));
   tree_.for_each_overlap(box_of(corners(triangle, positions)), [&](std::size_t child) {
     const auto other = static_cast<std::uint32_t>(child);
     if (!misses(plane, corners(other, positions_)) &&
@@ -416,7 +435,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> CrossingFinder::met_by(
     std::span<const std::uint32_t> others, const std::function<std::array<Vec3d, 3>(std::uint32_t)>& corners_of) const {
   return find_in_parallel(others.size(), 64, [&](std::size_t i, std::vector<TrianglePair>& found) {
     const std::array<Vec3d, 3> other = corners_of(others[i]);
-    const Plane plane(other);
+    const TrianglePlane plane(other);
     tree_.for_each_overlap(box_of(other), [&](std::size_t child) {
       const auto t = static_cast<std::uint32_t>(child);
       const std::array<Vec3d, 3> here = corners(t, positions_);
