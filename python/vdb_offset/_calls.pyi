@@ -16,12 +16,12 @@ def offset_several(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
-    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Offset]: ...
 
 def offset(
@@ -32,12 +32,12 @@ def offset(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
-    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Offset: ...
 
 def offset_curves_several(
@@ -68,11 +68,11 @@ def offset_to_tolerance(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Refined: ...
 
 def fit(
@@ -80,7 +80,8 @@ def fit(
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest',
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
     voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
     paths: bool = False, face_errors: bool = False, threads: int = 0, max_memory: Union[int, str, None] = None,
@@ -95,12 +96,12 @@ def shell_several(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
-    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> List[Shell]: ...
 
 def shell(
@@ -111,12 +112,12 @@ def shell(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
-    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Shell: ...
 
 def layers(
@@ -129,11 +130,11 @@ def layers(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Layers: ...
 
 def curve_layers(
@@ -184,11 +185,11 @@ def structured_layers(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
 def structured_curve_layers(
@@ -209,12 +210,12 @@ def check(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
-    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, progress: Progress = None
 ) -> Check: ...
 
 def check_curves(

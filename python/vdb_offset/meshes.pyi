@@ -24,10 +24,10 @@ def offset_mesh(
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',
-    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep', solver: Literal['closest', 'eikonal'] = 'closest',
-    texture: Optional[np.ndarray] = None, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, paths: bool = False,
-    face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    orient: Literal['keep', 'fix-direction-only', 'fix-cavities'] = 'keep',
+    solver: Literal['closest', 'eikonal'] = 'closest', texture: Optional[np.ndarray] = None,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    paths: bool = False, face_errors: bool = False, save_vdb: Union[str, os.PathLike, None] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Tuple[Any, Offset]: ...
