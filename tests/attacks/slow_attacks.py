@@ -40,6 +40,51 @@ def polygon(place, more):
     place.ended_well(place.run('star.obj', 'out.obj', '-d', '1%', *more), 0)
 
 
+def ring(count, z):
+    return ''.join(f'v {math.cos(2 * math.pi * i / count):.9g} {math.sin(2 * math.pi * i / count):.9g} {z}\n' for i in range(count))
+
+
+def around(count, hub, first, turned=False):
+    """Triangles from a vertex to a ring."""
+    pairs = [(first + i, first + (i + 1) % count) for i in range(count)]
+    return ''.join(f'f {hub} {b} {a}\n' if turned else f'f {hub} {a} {b}\n' for a, b in pairs)
+
+
+def fan(count):
+    return 'v 0 0 0\n' + ring(count, 0) + around(count, 1, 2)
+
+
+def cone(count):
+    return 'v 0 0 1\nv 0 0 0\n' + ring(count, 0) + around(count, 1, 3) + around(count, 2, 3, True)
+
+
+def two_cones(count):
+    return ('v 0 0 0\nv 0 0 1\nv 0 0 -1\n' + ring(count, 1) + ring(count, -1) + around(count, 1, 4, True) + around(count, 2, 4) +
+            around(count, 1, 4 + count) + around(count, 3, 4 + count, True))
+
+
+def book(count):
+    return 'v 0 0 0\nv 0 0 1\n' + ring(count, 0.5) + ''.join(f'f 1 2 {i + 3}\n' for i in range(count))
+
+
+def hanging(count):
+    """A square whose lower side has that many vertices of the strip below it."""
+    at = [i / (count + 1) for i in range(count + 2)]
+    top = [1, *range(5, 5 + count), 2]
+    below = 5 + count
+    return ('v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n' + ''.join(f'v {x!r} 0 0\n' for x in at[1:-1]) + ''.join(f'v {x!r} -1 0\n' for x in at) +
+            'f 1 2 3 4\n' + ''.join(f'f {below + i} {below + i + 1} {top[i + 1]} {top[i]}\n' for i in range(count + 1)))
+
+
+@attack_each({'fan': (fan, 20000), 'shell of a fan': (fan, 10000, '--shell'), 'cone': (cone, 25000), 'two cones': (two_cones, 5000),
+              'around an edge': (book, 10000), 'hanging vertices': (hanging, 5000)})
+def around_one_place(place, case):
+    """All pairs of boxes of such triangles meet."""
+    shape, count, *more = case
+    place.file('hub.obj', shape(part(place, count)))
+    place.ended_well(place.run('hub.obj', 'out.obj', '-d', '0.05', *more), 0)
+
+
 @attack
 def joined_lines(place):
     place.file('joined.obj', BOX + 'l 1 ' + '\\\n' * 1000000 + '2\n')

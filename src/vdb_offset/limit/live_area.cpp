@@ -33,9 +33,14 @@ LiveArea::LiveArea(const ConstrainedSurface& constrained, const Distances& dista
     : constrained_(constrained),
       surface_(constrained.surface),
       distances_(distances),
-      live_(constrained.surface.vertices.size(), -1.0) {
-  for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
-    if (counts(t)) whole_area_ += area_of(t);
+      live_(constrained.surface.vertices.size(), -1.0),
+      area_(constrained.surface.vertices.size(), 0.0) {
+  for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
+    if (!counts(t)) continue;
+    const double area = area_of(t);
+    whole_area_ += area;
+    for (const auto v : surface_.triangles[t]) area_[v] += area / 3;
+  }
 }
 
 bool LiveArea::counts(std::uint32_t t) const {
@@ -46,13 +51,6 @@ double LiveArea::area_of(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
   const auto& x = surface_.vertices;
   return (x[b] - x[a]).cross(x[c] - x[a]).length() / 2;
-}
-
-double LiveArea::area(std::uint32_t v) const {
-  double area = 0;
-  for (const auto t : surface_.triangles_around(v))
-    if (counts(t)) area += area_of(t) / 3;
-  return area;
 }
 
 void LiveArea::measure(const std::vector<std::uint32_t>& vertices) {

@@ -25,7 +25,7 @@ class LiveArea {
   /// Area of the moving part's faces.
   double whole_area() const { return whole_area_; }
   /// A third of the area of the faces around a vertex, live or not.
-  double area(std::uint32_t vertex) const;
+  double area(std::uint32_t vertex) const { return area_[vertex]; }
 
   /// Measures the vertices whose live area is not known yet. \pre each once
   void measure(const std::vector<std::uint32_t>& vertices);
@@ -64,6 +64,7 @@ class LiveArea {
   const Distances& distances_;
   double whole_area_ = 0;
   std::vector<double> live_;  // of each vertex; negative if it is not known
+  std::vector<double> area_;  // of each vertex: a third of that of the faces around it
 };
 
 }  // namespace vdb_offset

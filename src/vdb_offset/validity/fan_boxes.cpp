@@ -10,9 +10,9 @@ namespace vdb_offset {
 namespace {
 
 // Triangles around a vertex for which directions are kept: with fewer, all pairs are soon tested. Not measured.
-constexpr std::uint32_t kMany = 64;
+constexpr std::uint32_t kMany = 256;
 // What rounding to floats may change of a direction, and of the angle between two. Reasoned: far above 2^-24.
-constexpr float kRounding = 1e-6F;
+constexpr float kDirectionRounding = 1e-6F;
 
 constexpr std::size_t kWidth = BoxTree::kWidth;
 
@@ -26,8 +26,8 @@ FloatBox around(const Vec3d& direction, double margin) {
   FloatBox box;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto x = static_cast<float>(direction[static_cast<int>(k)]);
-    box.lower[k] = x - static_cast<float>(margin) - kRounding;
-    box.upper[k] = x + static_cast<float>(margin) + kRounding;
+    box.lower[k] = x - static_cast<float>(margin) - kDirectionRounding;
+    box.upper[k] = x + static_cast<float>(margin) + kDirectionRounding;
   }
   return box;
 }
@@ -66,6 +66,8 @@ void FanBoxes::refit(std::span<const std::uint32_t> changed) {
   for (std::size_t level = 1; level < nodes_.size(); ++level) {
     for (std::uint32_t& i : above) i /= kWidth;
     above.erase(std::unique(above.begin(), above.end()), above.end());
+    // What triangles have in common stays.
+    std::erase_if(above, [&](std::uint32_t i) { return nodes_[level][i].common[0] == kNone; });
     for (const auto i : above) nodes_[level][i] = level == 1 ? node_of_triangles(i) : node_above(level, i);
   }
 }

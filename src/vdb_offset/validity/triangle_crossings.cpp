@@ -27,56 +27,6 @@ using Point = Kernel::Point_3;
 using Triangle = Kernel::Triangle_3;
 using Segment = Kernel::Segment_3;
 
-/// Two triangles to be tested, the corners that they share first.
-struct TestedPair {
-  std::array<Vec3d, 3> a, b;
-  int shared = 0;
-
-  /// Two triangles of a surface, with their vertices at positions that may be others for each. They share a corner only
-  /// if both have it at the same position.
-  TestedPair(const Surface& surface, std::span<const Vec3d> positions_of_a, std::uint32_t s,
-             std::span<const Vec3d> positions_of_b, std::uint32_t t) {
-    std::array<std::uint32_t, 3> of_a = surface.triangles[s], of_b = surface.triangles[t];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto n = static_cast<std::size_t>(shared);
-      const auto found = std::find(of_b.begin() + shared, of_b.end(), of_a[i]);
-      if (found == of_b.end() || positions_of_a[of_a[i]] != positions_of_b[*found]) continue;
-      std::swap(*found, of_b[n]);
-      std::swap(of_a[i], of_a[n]);
-      ++shared;
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      a[k] = positions_of_a[of_a[k]];
-      b[k] = positions_of_b[of_b[k]];
-    }
-  }
-
-  /// Two triangles that share the corners that both have at the same position.
-  TestedPair(const std::array<Vec3d, 3>& first, const std::array<Vec3d, 3>& second) : a(first), b(second) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto n = static_cast<std::size_t>(shared);
-      const auto found = std::find(b.begin() + shared, b.end(), a[i]);
-      if (found == b.end()) continue;
-      std::swap(*found, b[n]);
-      std::swap(a[i], a[n]);
-      ++shared;
-    }
-  }
-};
-
-/// True if a triangle, with no corner in the plane, lies clearly on one side of it.
-bool misses(const TrianglePlane& plane, const std::array<Vec3d, 3>& triangle) {
-  const int side = plane.side(triangle[0]);
-  return side != 0 && plane.side(triangle[1]) == side && plane.side(triangle[2]) == side;
-}
-
-/// True if the corners of a triangle after those that are shared lie clearly on one side of the plane of the other.
-bool on_one_side(const TrianglePlane& plane, const std::array<Vec3d, 3>& b, int shared) {
-  int sum = 0;
-  for (auto k = static_cast<std::size_t>(shared); k < 3; ++k) sum += plane.side(b[k]);
-  return std::abs(sum) == 3 - shared;
-}
-
 /// True if the corners of a surface's triangle t that triangle s does not have lie clearly on one side of the plane of
 /// s.
 bool on_one_side(const TrianglePlane& plane, const Surface& surface, std::span<const Vec3d> positions, std::uint32_t s,
@@ -91,22 +41,6 @@ bool on_one_side(const TrianglePlane& plane, const Surface& surface, std::span<c
   return corners > 0 && std::abs(sum) == corners;
 }
 
-/// True if the triangles, which share their first corner, clearly lie to either side of a plane through it: one at
-/// right angles to the difference of the directions that they lie in.
-bool on_either_side(const std::array<Vec3d, 3>& a, const std::array<Vec3d, 3>& b) {
-  const std::array<Vec3d, 4> edge = {a[1] - a[0], a[2] - a[0], b[1] - b[0], b[2] - b[0]};
-  Vec3d w(0.0);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double length = edge[i].length();
-    if (!(length > 0)) return false;
-    w += edge[i] * ((i < 2 ? 1 : -1) / length);
-  }
-  const double margin = kCrossingRounding * w.length();
-  for (std::size_t i = 0; i < 4; ++i)
-    if (!((i < 2 ? 1 : -1) * w.dot(edge[i]) > margin * edge[i].length())) return false;
-  return true;
-}
-
 /// Whether two triangles meet elsewhere than in the corners that they share. Most pairs are clearly apart; no more than
 /// rounding is left to the exact predicates.
 bool meet(const TestedPair& pair) {
@@ -114,6 +48,7 @@ bool meet(const TestedPair& pair) {
   const TrianglePlane plane_of_a(pair.a), plane_of_b(pair.b);
   if (on_one_side(plane_of_a, pair.b, pair.shared) || on_one_side(plane_of_b, pair.a, pair.shared)) return false;
   if (pair.shared == 1 && on_either_side(pair.a, pair.b)) return false;
+  if (pair.shared == 0 && (EdgePlanes(pair.a).miss(pair.b) || EdgePlanes(pair.b).miss(pair.a))) return false;
   std::array<Point, 3> a, b;
   for (std::size_t k = 0; k < 3; ++k) {
     a[k] = {pair.a[k][0], pair.a[k][1], pair.a[k][2]};
@@ -195,23 +130,59 @@ FloatBox CrossingFinder::box_of(const std::array<Vec3d, 3>& corners) const {
   return box;
 }
 
-/// Where fans are large, whether all of some triangles are clearly on one side of the box of a child of the tree, as
-/// long ones are of others that their boxes meet.
-bool CrossingFinder::miss(std::span<const std::uint32_t> triangles, std::size_t level, std::size_t child) const {
-  if (planes_.empty()) return false;
-  const FloatBox box =
-      BoxTree::box(tree_.levels()[level][child / BoxTree::kWidth], static_cast<int>(child % BoxTree::kWidth));
-  return std::all_of(triangles.begin(), triangles.end(),
-                     [&](std::uint32_t t) { return planes_[t].misses(box, surface_.origin); });
+bool CrossingFinder::misses(std::uint32_t t, const FloatBox& box) const {
+  return planes_[t].misses(box, surface_.origin) || EdgePlanes(corners(t, positions_)).miss(box, surface_.origin);
 }
 
-/// Which triangles of a block may meet what is in a box, as bits: by their planes where these are known.
-unsigned CrossingFinder::may_meet(std::size_t block, const FloatBox& box) const {
-  unsigned may = (1u << BoxTree::kWidth) - 1;
-  for (std::size_t t = block * BoxTree::kWidth; t < std::min(planes_.size(), (block + 1) * BoxTree::kWidth); ++t)
-    if (planes_[t].misses(box, surface_.origin)) may &= ~(1u << t % BoxTree::kWidth);
-  return may;
+FloatBox CrossingFinder::box_of_child(std::size_t level, std::size_t child) const {
+  return BoxTree::box(tree_.levels()[level][child / BoxTree::kWidth], static_cast<int>(child % BoxTree::kWidth));
 }
+
+/// What a search of some triangles need not look at, where fans are large: what is apart in direction, and once it has
+/// looked at much, as long triangles whose boxes meet many others, what is on one side of their planes.
+class CrossingFinder::Sieve {
+ public:
+  /// \param triangles of one block; referred to \param all around them
+  Sieve(const CrossingFinder& finder, std::span<const std::uint32_t> triangles, const FloatBox& all)
+      : finder_(finder),
+        triangles_(triangles),
+        all_(all),
+        fan_(triangles.empty() ? nullptr : finder.fans_.of_block(triangles.front() / BoxTree::kWidth)) {}
+
+  bool lets_through(std::size_t level, std::size_t child) {
+    if (finder_.planes_.empty()) return true;
+    if (fan_ && finder_.fans_.are_apart(*fan_, level, child)) return false;
+    if (++visited_ <= kFew) return true;
+    if (own_.empty())
+      for (const auto t : triangles_)
+        own_.emplace_back(finder_.planes_[t], EdgePlanes(finder_.corners(t, finder_.positions_)));
+    const FloatBox box = finder_.box_of_child(level, child);
+    return std::any_of(own_.begin(), own_.end(), [&](const auto& each) {
+      return !each.first.misses(box, finder_.surface_.origin) && !each.second.miss(box, finder_.surface_.origin);
+    });
+  }
+
+  /// Which triangles of a block may meet those of the search, as bits.
+  unsigned may_meet(std::size_t block) const {
+    unsigned may = (1u << BoxTree::kWidth) - 1;
+    if (visited_ <= kFew) return may;
+    for (std::size_t t = block * BoxTree::kWidth; t < std::min(finder_.planes_.size(), (block + 1) * BoxTree::kWidth);
+         ++t)
+      if (finder_.misses(static_cast<std::uint32_t>(t), all_)) may &= ~(1u << t % BoxTree::kWidth);
+    return may;
+  }
+
+ private:
+  // Boxes that a search looks at without more ado: planes cost more than most have to look at. Not measured.
+  static constexpr std::size_t kFew = 64;
+
+  const CrossingFinder& finder_;
+  std::span<const std::uint32_t> triangles_;
+  const FloatBox& all_;
+  const FanBoxes::Node* fan_;
+  std::size_t visited_ = 0;
+  std::vector<std::pair<TrianglePlane, EdgePlanes>> own_;
+};
 
 /// Calls visit(s, t), which says whether that is enough, for the pairs that meet of a block's triangles and those that
 /// follow. Few of a block's triangles come near the box around another.
@@ -220,8 +191,12 @@ void CrossingFinder::for_each_pair_of(std::size_t block, Takes&& takes, Visit&& 
   const auto& blocks = tree_.levels().front();
   constexpr std::uint32_t kWidth = BoxTree::kWidth;
   const FloatBox all = BoxTree::around(blocks[block]);
+  std::vector<std::uint32_t> own;
+  for (std::size_t t = block * kWidth; t < std::min(planes_.size(), (block + 1) * kWidth); ++t)
+    own.push_back(static_cast<std::uint32_t>(t));
+  Sieve sieve(*this, own, all);
   const auto compare = [&](std::size_t other, unsigned near) {
-    const unsigned may = may_meet(other, all);
+    const unsigned may = sieve.may_meet(other);
     for (; near != 0; near &= near - 1) {
       const int i = std::countr_zero(near);
       const auto s = static_cast<std::uint32_t>(block) * kWidth + static_cast<std::uint32_t>(i);
@@ -244,15 +219,8 @@ void CrossingFinder::for_each_pair_of(std::size_t block, Takes&& takes, Visit&& 
     compare(block, kAll);
     return;
   }
-  const FanBoxes::Node* const fan = fans_.of_block(block);
-  std::vector<std::uint32_t> own;
-  for (std::size_t t = block * kWidth; t < std::min(planes_.size(), (block + 1) * kWidth); ++t)
-    own.push_back(static_cast<std::uint32_t>(t));
   tree_.any_overlap_of(
-      all, 1,
-      [&](std::size_t level, std::size_t child) {
-        return !(fan && fans_.are_apart(*fan, level, child)) && !miss(own, level, child);
-      },
+      all, 1, [&](std::size_t level, std::size_t child) { return sieve.lets_through(level, child); },
       [&](std::size_t other) {
         if (other < block) return false;
         const FloatBox box = BoxTree::box(tree_.levels()[1][other / kWidth], static_cast<int>(other % kWidth));
@@ -299,11 +267,11 @@ SelfCrossings CrossingFinder::listed() const {
 bool CrossingFinder::meets_any(std::uint32_t t) const {
   const std::array<Vec3d, 3> here = corners(t, positions_);
   const TrianglePlane plane(here);
-  const FanBoxes::Node* const fan = fans_.of_block(t / BoxTree::kWidth);
-  const auto counts = [&](std::size_t level, std::size_t child) {
-    return !fan || !fans_.are_apart(*fan, level, child);
-  };
-  return tree_.any_overlap_of(box_of(here), 0, counts, [&](std::size_t child) {
+  const std::array<std::uint32_t, 1> only{t};
+  const FloatBox box = box_of(here);
+  Sieve sieve(*this, only, box);
+  const auto counts = [&](std::size_t level, std::size_t child) { return sieve.lets_through(level, child); };
+  return tree_.any_overlap_of(box, 0, counts, [&](std::size_t child) {
     const auto other = static_cast<std::uint32_t>(child);
     if (other == t || on_one_side(plane, surface_, positions_, t, other)) return false;
     const TrianglePair pair = std::minmax(t, other);
@@ -338,8 +306,9 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
     open[count].emplace(Open{t, box_of(here), TrianglePlane(here)});
     all.include(open[count++]->box);
   }
+  Sieve sieve(*this, run, all);
   const auto search = [&](std::size_t block) {
-    const unsigned may = may_meet(block, all);
+    const unsigned may = sieve.may_meet(block);
     for (std::size_t i = 0; i < count;) {
       const auto& [t, box, plane] = *open[i];
       bool found = false;
@@ -356,15 +325,9 @@ void CrossingFinder::any_near(std::span<const std::uint32_t> run, Takes&& takes,
   };
   if (count == 0) return;
   if (tree_.levels().size() == 1) search(0);
-  else {
-    const FanBoxes::Node* const fan = fans_.of_block(run.front() / BoxTree::kWidth);
+  else
     tree_.any_overlap_of(
-        all, 1,
-        [&](std::size_t level, std::size_t child) {
-          return !(fan && fans_.are_apart(*fan, level, child)) && !miss(run, level, child);
-        },
-        search);
-  }
+        all, 1, [&](std::size_t level, std::size_t child) { return sieve.lets_through(level, child); }, search);
 }
 
 std::vector<TrianglePair> CrossingFinder::of_updated(const std::function<bool(std::uint32_t)>& matters) const {
@@ -422,11 +385,17 @@ bool CrossingFinder::go_through(const TrianglePair& pair) const {
 std::vector<std::uint32_t> CrossingFinder::met_by(std::uint32_t triangle, std::span<const Vec3d> positions) const {
   std::vector<std::uint32_t> met;
   const TrianglePlane plane(corners(triangle, positions));
-  tree_.for_each_overlap(box_of(corners(triangle, positions)), [&](std::size_t child) {
+  const FloatBox box = box_of(corners(triangle, positions));
+  const auto counts = [&](std::size_t level, std::size_t child) {
+    return planes_.empty() || !plane.misses(box_of_child(level, child), surface_.origin);
+  };
+  tree_.any_overlap_of(box, 0, counts, [&](std::size_t child) {
     const auto other = static_cast<std::uint32_t>(child);
-    if (!misses(plane, corners(other, positions_)) &&
+    if (!planes_.empty() && misses(other, box)) return false;
+    if (!vdb_offset::misses(plane, corners(other, positions_)) &&
         meet(TestedPair(surface_, positions, triangle, positions_, other)))
       met.push_back(other);
+    return false;
   });
   return met;
 }
@@ -439,7 +408,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> CrossingFinder::met_by(
     tree_.for_each_overlap(box_of(other), [&](std::size_t child) {
       const auto t = static_cast<std::uint32_t>(child);
       const std::array<Vec3d, 3> here = corners(t, positions_);
-      if (!misses(plane, here) && meet(TestedPair(other, here))) found.emplace_back(others[i], t);
+      if (!vdb_offset::misses(plane, here) && meet(TestedPair(other, here))) found.emplace_back(others[i], t);
     });
   });
 }

@@ -10,8 +10,8 @@
 
 #include "vdb_offset/base/box_tree.h"
 #include "vdb_offset/surface/surface.h"
+#include "vdb_offset/validity/clearly_apart.h"
 #include "vdb_offset/validity/fan_boxes.h"
-#include "vdb_offset/validity/triangle_plane.h"
 
 namespace vdb_offset {
 
@@ -81,8 +81,9 @@ class CrossingFinder {
   template <class Takes, class Visit>
   void for_each_pair_of(std::size_t block, Takes&& takes, Visit&& visit) const;
   bool meets_any(std::uint32_t triangle) const;
-  bool miss(std::span<const std::uint32_t> triangles, std::size_t level, std::size_t child) const;
-  unsigned may_meet(std::size_t block, const FloatBox& box) const;
+  class Sieve;
+  bool misses(std::uint32_t triangle, const FloatBox& box) const;
+  FloatBox box_of_child(std::size_t level, std::size_t child) const;
   std::array<Vec3d, 3> corners(std::size_t triangle, std::span<const Vec3d> positions) const;
   FloatBox box_of(const std::array<Vec3d, 3>& corners) const;
   std::vector<std::uint32_t> updated_runs() const;
