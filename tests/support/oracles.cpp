@@ -35,13 +35,10 @@ double triangle_distance(const Vec3d& x, const Vec3d& a, const Vec3d& b, const V
   return inside ? std::abs(height) : edges;
 }
 
+/// Polygons are what their triangles are: a concave one, bent by noise, has more than one surface else.
 template <class Visit>
 void for_each_triangle(PolygonView mesh, Visit&& visit) {
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.face(f);
-    for (std::size_t k = 2; k < face.size(); ++k)
-      visit(mesh.positions[face[0]], mesh.positions[face[k - 1]], mesh.positions[face[k]]);
-  }
+  for (const auto& [a, b, c] : split_polygons(mesh)) visit(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
 }
 
 }  // namespace
