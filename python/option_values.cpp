@@ -226,6 +226,8 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
   if (const py::object path = keywords["save_vdb"]; !path.is_none()) {
     asked.vdb = py::module_::import("os").attr("fsdecode")(path).cast<std::string>();
     if (asked.vdb.empty()) throw InvalidOption("save_vdb: expected the name of a file, got an empty one");
+    if (asked.vdb.find('\0') != std::string::npos)
+      throw InvalidOption("save_vdb: expected the name of a file, got one with a null character");
     options.keep_field = true;
   }
   return asked;

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of options that are none, or that say what no option takes."""
+import os
+
 from attack import attack, attack_each
 
 ONE = ('box.obj', 'o.obj', '--config', 'all.toml')
@@ -73,6 +75,32 @@ def partitions_that_are_none(place, name):
     place.box('in/box.obj')
     place.refused(place.run('batch', 'in', 'out', '-d', '0.1', f'--slurm={name}'), 1, '--slurm: expected|--slurm: 1 required')
     place.check('PWN' not in place.names(), 'a partition ran a command')
+
+
+# Names of models that a spreadsheet would take for formulas.
+@attack_each({name: name for name in ('=1+1.obj', '+1.obj', '-1.obj', '@x.obj', '\tx.obj', "=cmd|'x'!A1.obj")})
+def names_that_are_formulas(place, name):
+    place.box('in/' + name)
+    place.ended_well(place.run('batch', 'in', 'out', '-d', '0.1'), 0)
+    row = (place.folder / 'out/batch.csv').read_text().split('\n')[1]
+    shown = '\\x09x.obj' if name.startswith('\t') else "'" + name
+    place.check(row.startswith('"' + shown), f'expected a text, got {row}')
+
+
+@attack
+def distances_that_are_formulas(place):
+    place.box('in/box.obj')
+    place.ended_well(place.run('batch', 'in', 'out', '-d', '-1%', '--distance=-(0.01)+0*x', '--output', '{model}_{i}.obj'), 0)
+    rows = (place.folder / 'out/batch.csv').read_text().split('\n')
+    place.check(rows[1].startswith('"box.obj",-1%,') and rows[2].startswith('"box.obj",\'-(0.01)+0*x,'), f'got {rows}')
+
+
+@attack
+def table_that_is_a_pipe(place):
+    place.box('in/box.obj')
+    place.file('out/x', '')
+    os.mkfifo(place.folder / 'out/batch.csv')
+    place.refused(place.run('batch', 'in', 'out', '-d', '0.1'), 4, 'batch.csv: expected a file that can be replaced')
 
 
 @attack

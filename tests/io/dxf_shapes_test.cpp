@@ -259,6 +259,9 @@ TEST_CASE("dxf: INSERT shows blocks moved, scaled, turned, in rows and in each o
                                                                                 {{0, 10, 0}, {0, 11, 0}},
                                                                                 {{-20, 0, 0}, {-20, 1, 0}},
                                                                                 {{-20, 10, 0}, {-20, 11, 0}}});
+  for (const char* const many : {"70|1073741824", "71|4294967296", "70|1e300", "70|1000001"})
+    CHECK_THROWS_WITH(shown(fmt::format("0|INSERT 2|part 10|0 20|0 {}", many)),
+                      Catch::Contains("INSERT of 1000000 entities at most"));
   // Circles under unlike scales are ellipses.
   const io::CurveFile ellipse =
       read(dxf_text::file("0|INSERT 2|c 41|3 42|2", "", "0|BLOCK 2|c 0|CIRCLE 10|0 20|0 40|1 0|ENDBLK"));

@@ -338,7 +338,8 @@ class Offsets(BesideTheCommand):
     def test_field_that_cannot_be_saved(self):
         path = self.run_command.path("field.vdb")
         for options, kind in (({"save_vdb": self.run_command.path("no/field.vdb")}, vdb_offset.Error),
-                              ({"save_vdb": path, "distance_z": 0.2}, vdb_offset.InvalidOption)):
+                              ({"save_vdb": path, "distance_z": 0.2}, vdb_offset.InvalidOption),
+                              ({"save_vdb": str(path) + "\0x"}, vdb_offset.InvalidOption)):
             with self.assertRaises(kind):
                 vdb_offset.offset(CUBE, QUADS, 0.1, **options)
         with self.assertRaisesRegex(vdb_offset.InvalidOption, "save_vdb: expected a distance other than 0"):

@@ -64,7 +64,13 @@ Table::Table(const std::string& out) : path_(path_of_table(out)) {}
 
 void Table::keep(std::size_t model, std::string rows) { rows_.emplace_back(model, std::move(rows)); }
 
-void Table::begin() { write(); }
+void Table::begin() {
+  struct stat is {};
+  // To write to a pipe waits for somebody who reads it.
+  if (::stat(path_.c_str(), &is) == 0 && !S_ISREG(is.st_mode))
+    throw WriteError(fmt::format("{}: expected a file that can be replaced, got something else", path_));
+  write();
+}
 
 void Table::add(std::size_t model, std::string rows) {
   const int file = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);

@@ -111,6 +111,15 @@ class InsertResolver {
     return found->second;
   }
 
+  /// How many columns or rows an INSERT has: one if it does not say so.
+  std::int64_t count_of(const DxfValues& values, int code, const DxfEntity& entity) const {
+    const double count = values.value(code, 1);
+    if (!(count <= static_cast<double>(kMostEntities)))
+      text_.fail_at(entity.begin, fmt::format("INSERT of {} entities at most", kMostEntities),
+                    fmt::format("{:g} columns or rows", count));
+    return static_cast<std::int64_t>(std::max(1.0, count));
+  }
+
   void insert(std::uint32_t number, const DxfPlacement& placement, std::uint32_t shown_by, Sight sight) {
     const DxfEntity entity = drawing_.document.entities[number];
     const std::uint32_t block = block_of(entity);
@@ -125,8 +134,7 @@ class InsertResolver {
     const double c = is_square ? std::round(std::cos(turn)) : std::cos(turn),
                  s = is_square ? std::round(std::sin(turn)) : std::sin(turn);
     const DxfPlacement seen = is_mirrored(text_, entity) ? product(placement, kDxfMirrored) : placement;
-    const auto columns = std::max<std::int64_t>(1, values.flags(70)),
-               rows = std::max<std::int64_t>(1, values.flags(71));
+    const std::int64_t columns = count_of(values, 70, entity), rows = count_of(values, 71, entity);
     active_.push_back(block);
     for (std::int64_t row = 0; row < rows; ++row)
       for (std::int64_t column = 0; column < columns; ++column) {
