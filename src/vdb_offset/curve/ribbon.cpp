@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "vdb_offset/base/box_tree.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/surface/surface.h"
 
@@ -203,6 +204,16 @@ PlaneFrame plane_of(CurvesView curves) {
 
 namespace {
 
+/// Rounded outwards.
+FloatBox box_around(const Vec2d& lower, const Vec2d& upper) {
+  FloatBox box{{0, 0, 0}, {0, 0, 0}};
+  for (std::size_t k = 0; k < 2; ++k) {
+    box.lower[k] = std::nextafter(static_cast<float>(lower[static_cast<int>(k)]), -FloatBox::kInfinity);
+    box.upper[k] = std::nextafter(static_cast<float>(upper[static_cast<int>(k)]), FloatBox::kInfinity);
+  }
+  return box;
+}
+
 /// The segments of curves between points that count as one.
 std::vector<Segment> segments_of(CurvesView curves, std::span<const Vec2d> points,
                                  std::span<const std::uint32_t> welded_to) {
@@ -292,10 +303,14 @@ CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points) {
     const auto turned = std::count_if(steps.begin(), steps.end(), [](const Step& step) { return step.turned; });
     take(steps, 2 * static_cast<std::size_t>(turned) > steps.size());
   }
+  BoxTree boxes;
+  if (!loops.empty())
+    boxes.build(loops.size(), [&](std::size_t i) { return box_around(loops[i].lower, loops[i].upper); });
   for (const Loop& loop : loops) {
     const Vec2d sample = loop.sample();
-    const auto around = std::count_if(loops.begin(), loops.end(),
-                                      [&](const Loop& other) { return &other != &loop && other.holds(sample); });
+    std::size_t around = 0;
+    boxes.for_each_overlap(box_around(sample, sample),
+                           [&](std::size_t i) { around += &loops[i] != &loop && loops[i].holds(sample); });
     take(loop.steps, (loop.area < 0) != (around % 2 == 1));
   }
   joined.segments = std::move(in_order);
