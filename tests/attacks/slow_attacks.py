@@ -101,6 +101,40 @@ def curves_from_one_point(place):
     place.ended_well(place.run('hub.obj', 'out.obj', '-d', '1%'), 0)
 
 
+def drawing(paths, size):
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{size}" height="{size}" viewBox="0 0 {size} {size}">\n' +
+            ''.join(f'<path d="{path}"/>\n' for path in paths) + '</svg>\n')
+
+
+def circle(x, y, radius):
+    return 'M' + 'L'.join(f'{x + radius * math.cos(2 * math.pi * i / 64):.6f} {y + radius * math.sin(2 * math.pi * i / 64):.6f}'
+                          for i in range(64)) + 'Z'
+
+
+@attack
+def circles_through_one_point(place):
+    count = part(place, 200)
+    turns = [2 * math.pi * i / count for i in range(count)]
+    place.file('rose.svg', drawing([circle(500 + 100 * math.cos(a), 500 + 100 * math.sin(a), 100) for a in turns], 1000))
+    place.ended_well(place.run('rose.svg', 'out.svg', '-d', '1'), 0)
+
+
+@attack
+def circles_in_each_other(place):
+    count = part(place, 400)
+    place.file('rings.svg', drawing([circle(500, 500, 400 * (i + 1) / count) for i in range(count)], 1000))
+    place.ended_well(place.run('rings.svg', 'out.svg', '-d', '0.2'), 0)
+
+
+@attack_each({'one path': True, 'paths': False})
+def many_triangles(place, in_one):
+    count = part(place, 100000 if in_one else 50000)
+    wide = math.isqrt(count)
+    each = [f'M{3 * (i % wide)} {3 * (i // wide)}h1l-1 1Z' for i in range(count)]
+    place.file('triangles.svg', drawing([''.join(each)] if in_one else each, 3 * wide + 9))
+    place.ended_well(place.run('triangles.svg', 'out.svg', '-d', '0.1'), 0)
+
+
 @attack_each({'level': 0, 'tilted': 0.37})
 def points_on_one_line(place, slope):
     """Each place is on a third of the segments. What has fewer crossings than are counted has them listed, which takes
