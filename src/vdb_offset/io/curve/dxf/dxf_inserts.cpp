@@ -116,7 +116,7 @@ class InsertResolver {
     const double count = values.value(code, 1);
     if (!(count <= static_cast<double>(kMostEntities)))
       text_.fail_at(entity.begin, fmt::format("INSERT of {} entities at most", kMostEntities),
-                    fmt::format("{:g} columns or rows", count));
+                    fmt::format("more, as {:g} columns or rows", count));
     return static_cast<std::int64_t>(std::max(1.0, count));
   }
 
