@@ -16,13 +16,14 @@
 namespace vdb_offset::tool {
 
 std::string in_quotes(const std::string& path) {
-  const bool is_plain = std::all_of(path.begin(), path.end(), [](char c) {
-    return std::string_view("'\\!").find(c) == std::string_view::npos && static_cast<unsigned char>(c) >= ' ' &&
-           c != '\x7f';
-  });
+  // In single quotes, fish takes two backslashes for one.
+  const bool is_plain = path.find("\\\\") == std::string::npos && std::all_of(path.begin(), path.end(), [](char c) {
+                          return std::string_view("'!").find(c) == std::string_view::npos &&
+                                 static_cast<unsigned char>(c) >= ' ' && c != '\x7f';
+                        });
   if (!is_plain)
     throw InvalidInput(
-        fmt::format("{}: expected a path without quotes, backslashes, exclamation marks and line breaks, "
+        fmt::format("{}: expected a path without quotes, double backslashes, exclamation marks and line breaks, "
                     "which shells of other machines may take otherwise",
                     readable(path)));
   return "'" + path + "'";
