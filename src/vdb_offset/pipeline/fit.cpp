@@ -241,6 +241,7 @@ class Fitting {
   /// the sense of least squares. Returns false if none can go farther.
   bool deepen() {
     more_.assign(depth_.size(), 0.0);
+    at_vertex_.clear();
     vertex_told_.assign(vertex_told_.size(), 0.0);
     for (std::uint32_t w = 0; w < vertex_gap_.size(); ++w)
       if (!stuck_[w] && vertex_gap_[w] < wanted_) add_for_vertex(w);
@@ -292,10 +293,17 @@ class Fitting {
     return sides;
   }
 
+  /// The same at a vertex, found once a round: of a fan, all triangles may be nearest there.
+  const std::map<std::uint32_t, double>& sides_at_vertex(std::uint32_t w) {
+    const auto [known, is_new] = at_vertex_.try_emplace(w);
+    if (is_new) known->second = sides_at(positions_[w], vertex_gap_[w], w, surface_.triangles_around(w));
+    return known->second;
+  }
+
   /// Flat faces go for their triangles, which know better where they lack.
   void add_for_vertex(std::uint32_t w) {
     const double lack = (wanted_ - vertex_gap_[w]) / vertex_gain_[w];
-    for (const auto& [part, share] : sides_at(positions_[w], vertex_gap_[w], w, surface_.triangles_around(w))) {
+    for (const auto& [part, share] : sides_at_vertex(w)) {
       if (parts_.is_flat(part)) continue;
       more_[part] = lack * share;
       vertex_told_[w] = lack;
@@ -317,11 +325,10 @@ class Fitting {
       else vertex = corners[k];
       if (part != kNone && !stuck_[corners[k]]) shares[part] += share;
     }
-    if (around.size() == 3) {
-      if (!parts_.is_flat(parts_.at(t, vertex))) return;  // the vertex has gone for it
-      around.assign(surface_.triangles_around(vertex).begin(), surface_.triangles_around(vertex).end());
-    }
-    const auto sides = sides_at(point, near.gap, vertex, around);
+    const bool is_at_vertex = around.size() == 3;
+    if (is_at_vertex && !parts_.is_flat(parts_.at(t, vertex))) return;  // the vertex has gone for it
+    const std::map<std::uint32_t, double> sides =
+        is_at_vertex ? sides_at_vertex(vertex) : sides_at(point, near.gap, vertex, around);
     const auto side = sides.find(parts_.at(t, vertex));
     double squared = 0;
     for (const auto& [part, share] : shares) squared += share * share;
@@ -390,6 +397,7 @@ class Fitting {
   std::vector<double> depth_, more_;  // of each part: the distance that it goes inward, and what is added in a round
   std::vector<std::uint8_t> stuck_;   // of each vertex: 1 if it cannot go any farther
   std::vector<Near> near_;            // of each triangle
+  std::map<std::uint32_t, std::map<std::uint32_t, double>> at_vertex_;  // of a round, as sides_at() of vertices
   std::vector<double> told_,
       gain_;  // of each triangle: how far its nearest point was to go, and the share it got of that
   std::vector<double> vertex_gap_, vertex_told_, vertex_gain_;  // of each vertex: its gap, and these two

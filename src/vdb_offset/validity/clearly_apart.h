@@ -49,13 +49,15 @@ class EdgePlanes {
   /// The same of a box, in coordinates relative to `origin`.
   bool miss(const FloatBox& box, const Vec3d& origin) const {
     return std::any_of(edges_.begin(), edges_.end(), [&](const Edge& edge) {
-      Vec3d nearest;  // the corner of the box that is least far out
+      double least = 0, farthest = 0;  // how far out a corner of the box is, and how far from the edge's point one is
       for (int k = 0; k < 3; ++k) {
         const auto i = static_cast<std::size_t>(k);
-        nearest[k] = origin[k] + static_cast<double>(edge.outward[k] > 0 ? box.lower[i] : box.upper[i]);
+        const double lower = origin[k] + static_cast<double>(box.lower[i]) - edge.point[k],
+                     upper = origin[k] + static_cast<double>(box.upper[i]) - edge.point[k];
+        least += edge.outward[k] * (edge.outward[k] > 0 ? lower : upper);
+        farthest += std::max(std::abs(lower), std::abs(upper));
       }
-      const Vec3d to = nearest - edge.point;
-      return edge.outward.dot(to) > edge.size * (no_shorter(to) + no_shorter(origin));
+      return least > edge.size * (farthest + no_shorter(origin));
     });
   }
 
