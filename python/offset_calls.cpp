@@ -30,6 +30,8 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
     texts = {axes->text};
   }
   require_field(asked, wanted);
+  constexpr std::size_t kResultBytes = 18000;  // a result as Python has it, whatever the mesh; measured
+  asked.options.bytes_held += wanted.size() * kResultBytes;
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(asked.options);
   std::vector<OffsetResult> results = run([&] {

@@ -171,6 +171,8 @@ void read_common(const Keywords& keywords, Options& options) {
   constexpr double kMemoryShare = 0.8;
   options.max_memory = static_cast<std::size_t>(kMemoryShare * static_cast<double>(available_memory()));
   if (const py::object size = keywords["max_memory"]; !size.is_none()) options.max_memory = size_of(size);
+  constexpr std::size_t kInterpreterBytes = 48 << 20;  // with NumPy; measured
+  options.bytes_held = kInterpreterBytes;
   keywords.read("threads", options.threads);
   constexpr int kMostThreads = 4096;  // as the command has it
   if (options.threads < 0 || options.threads > kMostThreads)

@@ -32,6 +32,7 @@ struct VDB_OFFSET_API IsoOptions {
   Orient orient = Orient::Keep;
   int threads = 0;             ///< 0: as many as the machine has.
   std::size_t max_memory = 0;  ///< Bytes for the whole run; 0: no limit.
+  std::size_t bytes_held = 0;  ///< Bytes that the caller holds for the run, as in OffsetOptions.
   ProgressCallback progress;   ///< See run.h; may cancel.
   ReserveCallback reserve;     ///< See run.h; may wait, and cancel.
 };

@@ -49,5 +49,10 @@ VDB_OFFSET_API OffsetStatistics plan_several(PolygonView mesh, std::span<const D
 /// Of the options, `distance`, `corners`, `obstacles`, `clearance`, `metric` and those of shells have no effect. \throw
 /// InvalidInput as offset(), and for a clearance that is not above 0 or another mesh without faces.
 VDB_OFFSET_API OffsetResult fit(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options);
+/// Reports what fit() would do in its first round, without doing it: the mesh's facts, the plan of the grid (without
+/// voxels where nothing is too near), and in `fit` the gap, what is nearer than the clearance, and how far parts have
+/// to go. \throw as fit()
+VDB_OFFSET_API OffsetStatistics plan_fit(PolygonView mesh, PolygonView other, double clearance,
+                                         const OffsetOptions& options);
 
 }  // namespace vdb_offset

@@ -78,6 +78,8 @@ struct VDB_OFFSET_API OffsetOptions {
   /// Bytes for the whole run, by the plan; 0: no limit. What is read, and lists that may grow to anything, keep to that
   /// of the process (set_memory_limit in run.h).
   std::size_t max_memory = 0;
+  /// Bytes that the caller holds for the run, such as a file's text: counted in the plan.
+  std::size_t bytes_held = 0;
   bool keep_field = false;  ///< Hand the distance field out with the result.
   bool keep_paths = false;  ///< Hand the vertices' paths out with the result; not for layers.
   bool keep_face_errors =

@@ -66,7 +66,7 @@ TEST_CASE("cad held: the walls of a narrow groove stop before they meet, and sta
 }
 
 TEST_CASE("cad held: a bore that the distance would close stays a cylinder", "[cad]") {
-  const CadFileFacts facts = io::write_cad(place_for("bore.step"), model_of("block.step"), 7, {}, held());
+  const CadFileFacts facts = io::write_cad(place_for("bore_held.step"), model_of("block.step"), 7, {}, held());
   CHECK(facts.made == Made::Solid);
   CHECK(facts.kept == 8);
   CHECK(facts.held == 1);

@@ -1002,7 +1002,7 @@ TEST_CASE("command: a scene brings what its shape is to fit, unless a distance i
   CHECK(run("'" + scene + "' peg.obj --strict --report peg.json").code == 0);
   CHECK_THAT(run.slurp(run.file("peg.json")), Catch::Contains("\"triangles_too_near\": 0"));
   CHECK(run("'" + scene + "' as_it_is.obj --distance 0").code == 0);
-  for (const std::string option : {"--shell", "--mode iso", "--dry-run", "--collision merge", "--corners miter"}) {
+  for (const std::string option : {"--shell", "--mode iso", "--collision merge", "--corners miter"}) {
     const Run refused = run("'" + scene + "' no.obj " + option);
     CHECK(refused.code == 1);
     CHECK_THAT(refused.err, Catch::Contains("without a fit"));

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "support/places.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
@@ -39,7 +40,7 @@ TEST_CASE("plan: a given size is taken as it is", "[plan]") {
 
 TEST_CASE("plan: what does not fit is refused with the size that would", "[plan]") {
   const Surface sphere = surface_of(scene::icosphere(1, 4));
-  const std::size_t budget = 64 << 20;  // of which the process itself takes 48
+  const std::size_t budget = 64 << 20;  // of which the process itself takes 16
   CHECK_THROWS_WITH(plan_grid(sphere, 0.5, {1e-3, {}}, budget, 1),
                     Catch::Contains("64 MiB") && Catch::Contains("would fit"));
   CHECK_THROWS_AS(plan_grid(sphere, 0.5, {1e-9, {}}, 0, 1), OutOfBudget);  // too many voxels across for any memory
@@ -113,5 +114,23 @@ TEST_CASE("plan: leaf nodes are estimated within a factor of two", "[plan]") {
     const auto truth = static_cast<double>(field.leaves->size());
     CHECK(static_cast<double>(plan.leaf_nodes) > truth / 2);
     CHECK(static_cast<double>(plan.leaf_nodes) < truth * 2.5);
+  }
+}
+
+TEST_CASE("plan: leaf nodes are estimated as many as there will be, or a third more", "[plan]") {
+  for (const char* scene : {"cube_out", "bumpy_sphere", "gear", "torus", "hollow_box"}) {
+    const scene::Scene made = scene::read_scene(test::scenes_path() + "/" + scene + ".json");
+    for (const double share : {0.002, 0.01, 0.05})
+      for (const double voxels : {1.0, 3.0}) {
+        Surface surface = surface_of(made.shape);
+        const double distance = share * surface.facts.diagonal;
+        const GridPlan plan = plan_grid(surface, distance, {distance / voxels, {}}, 0, 1);
+        if (plan.leaf_nodes > 20000) continue;
+        to_local_frame(surface, plan.voxel_size);
+        const DistanceField field = sweep(rasterise(surface, {plan.voxel_size, plan.band}), surface, {{}, plan.reach});
+        CAPTURE(scene, share, voxels);
+        CHECK(plan.leaf_nodes >= field.leaves->size());
+        CHECK(plan.leaf_nodes <= 4 * field.leaves->size() / 3 + 4);  // a few are soon a third
+      }
   }
 }

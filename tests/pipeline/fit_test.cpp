@@ -268,6 +268,30 @@ TEST_CASE("fit: nothing moves where there is room, and what has none is told", "
   CHECK_THROWS_AS(fit(sphere.view(), Polygons().view(), 0.1, {}), InvalidInput);
 }
 
+TEST_CASE("fit: the plan is that of the first round", "[fit]") {
+  const Polygons peg = scene::cylinder(1, 4, kFacets, 16, 3), socket = sleeve(1, 2, 1);
+  const OffsetStatistics plan = plan_fit(peg.view(), socket.view(), 0.1, {});
+  const OffsetResult result = fit(peg.view(), socket.view(), 0.1, {});
+  REQUIRE(plan.fit);
+  CHECK(plan.fit->starting_gap == result.statistics.fit->starting_gap);
+  CHECK(plan.fit->near_at_start == result.statistics.fit->near_at_start);
+  CHECK(plan.fit->deepest == Approx(0.1).epsilon(0.01));
+  CHECK(plan.plan.voxel_size > 0);
+  OffsetOptions alone;
+  alone.distance = -0.1;
+  CHECK(plan.plan.bytes > plan_offset(peg.view(), alone).plan.bytes);  // which holds no other mesh
+  alone.max_memory = plan.plan.bytes;
+  CHECK_NOTHROW(plan_fit(peg.view(), socket.view(), 0.1, alone));
+  alone.max_memory = 15 << 20;
+  CHECK_THROWS_AS(plan_fit(peg.view(), socket.view(), 0.1, alone), OutOfBudget);
+  Polygons far = scene::icosphere(1, 2);
+  for (Vec3d& p : far.positions) p += Vec3d(0, 0, 9);
+  const OffsetStatistics nothing = plan_fit(peg.view(), far.view(), 0.1, {});
+  CHECK(nothing.fit->near_at_start == 0);
+  CHECK(nothing.plan.voxel_size == 0);
+  CHECK(nothing.plan.bytes > 0);
+}
+
 TEST_CASE("fit: the same for any number of threads", "[fit]") {
   const Polygons peg = scene::cylinder(1, 4, kFacets, 16, 3), socket = sleeve(0.98, 2, 1);
   OffsetOptions one, all;

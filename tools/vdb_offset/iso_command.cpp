@@ -58,6 +58,7 @@ IsoOptions options_of(const Job& job, const Distances& distance, const std::stri
   options.orient = given.orient;
   options.threads = given.threads;
   options.max_memory = given.max_memory;
+  options.bytes_held = given.bytes_held;
   options.progress = given.progress;
   options.reserve = given.reserve;
   return options;

@@ -247,6 +247,10 @@ ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar
 
 ExitCode run_offset(const Job& job, const Timing& timing, ProgressBar& bar) {
   const Request& request = job.request;
+  if (request.dry_run && job.to_fit) {
+    print_fit_dry_run(job, plan_fit(job.source.view(), *job.to_fit, job.options.clearance, job.options));
+    return kDone;
+  }
   if (request.dry_run) {
     const PolygonView mesh = job.source.view();
     print_dry_run(

@@ -44,8 +44,7 @@ void settle_fit_of_scene(Job& job) {
                                     {"--obstacle", job.source.obstacles.face_count() > 0},
                                     {"--collision", request.collision.has_value()},
                                     {"--corners", request.corners.has_value()},
-                                    {"--save-vdb", !request.vdb.empty()},
-                                    {"--dry-run", request.dry_run}})
+                                    {"--save-vdb", !request.vdb.empty()}})
     if (given) throw InvalidOption(fmt::format("{}: expected a scene without a fit, or a --distance", name));
   job.to_fit = job.source.scene->to_fit.view();
   job.options.corners = Corners::Miter;  // as fits have
@@ -136,6 +135,25 @@ Precision precision_of(const Job& job) {
                     : io::precision_of(path, *job.source.file, writing);
 }
 
+// Bytes for each byte of a file: its text, what is noted of it to write it again, and the text written; and for that of
+// a shell, which has two skins. Measured.
+constexpr double kBytesOfFileByte = 3.3, kShellBytesOfFileByte = 5.3;
+// Bytes for each cell while a folder of OpenFOAM's is made, with the faces between cells, or a CGNS file. Measured.
+constexpr std::size_t kFoamCellBytes = 66, kCgnsCellBytes = 30;
+
+/// What the command holds beside the offset itself.
+std::size_t bytes_held(const Job& job) {
+  const std::size_t size = job.source.file ? job.source.file->text().size() : 0;
+  const auto of_file =
+      static_cast<std::size_t>((job.shell ? kShellBytesOfFileByte : kBytesOfFileByte) * static_cast<double>(size));
+  if (!job.request.layers || job.curves()) return of_file;
+  const auto format = io::volume_format_of(job.request.output);
+  const std::size_t of_cell = format == io::VolumeFormat::Foam   ? kFoamCellBytes
+                              : format == io::VolumeFormat::Cgns ? kCgnsCellBytes
+                                                                 : 0;
+  return of_file + of_cell * job.distances.size() * job.source.view().face_count();
+}
+
 }  // namespace
 
 Job resolve_options(const Request& request, const Source& source) {
@@ -160,6 +178,7 @@ Job resolve_options(const Request& request, const Source& source) {
   settle_surroundings(job);
   if (!request.layers) job.distances = distances_of(job);
   else job.distances = heights_of_layers(job);
+  job.options.bytes_held = bytes_held(job);
   return job;
 }
 

@@ -22,9 +22,16 @@ constexpr double kRibbonVoxels = kLeafWidth - 1;
 // Bytes that a point takes in each layer: its positions, and what is made of them for cells. For the plan's estimate
 // alone; not measured.
 constexpr std::size_t kLayerPointBytes = 180;
+// Bytes that a point takes beside the ribbon; measured: 120.
+constexpr std::size_t kPointBytes = 150;
 
-std::size_t bytes_beside(std::size_t points, bool keep_paths, const Yield& yield) {
-  return points * (yield.layers * kLayerPointBytes + (keep_paths ? yield.results * kPathBytes : 0));
+RunBytes bytes_of_run(CurvesView curves, const OffsetOptions& options, const Yield& yield) {
+  const std::size_t points = curves.positions.size();
+  RunBytes bytes{options.bytes_held + points * kPointBytes,
+                 points * yield.layers * kLayerPointBytes + further_bytes(points, yield.results)};
+  if (options.keep_field) bytes.always += kVdbModuleBytes;
+  if (options.keep_paths) bytes.after_grid += paths_bytes(points, yield.results);
+  return bytes;
 }
 
 }  // namespace
@@ -52,7 +59,7 @@ CurvePlan plan_ribbon(CurvesView curves, const OffsetOptions& options, int threa
   GridOptions grid;
   grid.voxel_size = chosen.size;
   planned.grid = plan_grid(planned.ribbon, farthest, grid, options.max_memory, threads,
-                           {bytes_beside(plane.points.size(), options.keep_paths, yield), true});
+                           {.bytes = bytes_of_run(curves, options, yield), .slab = true});
   planned.grid.reason = chosen.reason;
   statistics.plan = planned.grid;
   return planned;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vdb_offset/field/leaf_graph.h"
+#include "vdb_offset/field/run_bytes.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/surface/surface.h"
 
@@ -13,8 +14,9 @@ namespace vdb_offset {
 
 /// Further sizes that a plan depends on.
 struct PlanContext {
-  std::size_t bytes_beside = 0;  ///< Bytes that the run needs for other things.
-  bool slab = false;             ///< The surface is a ribbon, and its field one leaf node thick (see ribbon.h).
+  RunBytes bytes;        ///< What the run needs for other things.
+  bool has_grid = true;  ///< Else its frame alone is of use.
+  bool slab = false;     ///< The surface is a ribbon, and its field one leaf node thick (see ribbon.h).
 };
 
 /// Chooses the voxel size and estimates the cost.
@@ -50,20 +52,5 @@ struct VoxelSize {
 /// Chooses the voxel size as plan_grid() does, memory aside, for a mesh with this median edge and this diagonal. \throw
 /// InvalidInput as plan_grid()
 VoxelSize choose_voxel_size(double median_edge, double diagonal, double distance, const GridOptions& options);
-
-/// Bytes that a surface takes with all that is made from it.
-std::size_t surface_bytes(const Surface& surface);
-
-/// Bytes of a number of layers of cells on a mesh.
-std::size_t layers_bytes(PolygonView mesh, std::size_t layers);
-
-/// Results that are made valid at the same time; each takes memory. Not measured beside other numbers.
-inline constexpr std::size_t kResultsTogether = 4;
-
-/// Bytes of a vertex's path that is kept, handed out and written; measured: 1,300 with the file's text.
-inline constexpr std::size_t kPathBytes = 1300;
-
-/// Bytes of results beside the first.
-std::size_t results_bytes(PolygonView mesh, std::size_t results);
 
 }  // namespace vdb_offset

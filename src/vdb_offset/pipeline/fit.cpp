@@ -13,6 +13,7 @@
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/field/run_bytes.h"
 #include "vdb_offset/pipeline/field_stage.h"
 #include "vdb_offset/pipeline/fit_parts.h"
 #include "vdb_offset/validity/clearance.h"
@@ -147,16 +148,25 @@ class Fitting {
     options_.metric = {};
     options_.off_source = options_.inner_skin_last = false;
     options_.corners = Corners::Miter;
+    options_.bytes_held += surface_bytes(surface_) + surface_bytes(other_.surface());
+  }
+
+  /// What the first round would do.
+  OffsetStatistics plan() {
+    FitFacts facts = facts_at_start();
+    const bool goes_on = short_ > 0 && deepen();
+    for (const double depth : depth_) facts.deepest = std::max(facts.deepest, depth);
+    OffsetOptions options = options_;
+    if (goes_on) options.distance = depths();
+    OffsetStatistics statistics = plan_offset(mesh_, options);
+    if (!goes_on) statistics.plan.bytes = kProcessBytes + options_.bytes_held;
+    statistics.fit = facts;
+    return statistics;
   }
 
   OffsetResult run() {
     OffsetResult best = offset_by_depths();
-    measure_gaps(best.positions);
-    FitFacts facts;
-    facts.clearance = clearance_;
-    facts.is_signed = other_.is_solid();
-    facts.starting_gap = least_gap(best.positions);
-    facts.near_at_start = short_;
+    FitFacts facts = facts_at_start();
     auto best_so_far = std::pair(short_, -gap_);
     std::size_t fruitless = 0;
     for (std::size_t round = 0; short_ > 0 && round < kMostOffsets && fruitless < kPatience && deepen(); ++round) {
@@ -178,7 +188,18 @@ class Fitting {
   }
 
  private:
-  OffsetResult offset_by_depths() const {
+  FitFacts facts_at_start() {
+    measure_gaps(mesh_.positions);
+    FitFacts facts;
+    facts.clearance = clearance_;
+    facts.is_signed = other_.is_solid();
+    facts.starting_gap = least_gap(mesh_.positions);
+    facts.near_at_start = short_;
+    return facts;
+  }
+
+  /// How far vertices go, and where parts meet the corners of faces, by what their parts have to.
+  Distances depths() const {
     std::vector<double> each(mesh_.positions.size(), 0.0), at_corner(mesh_.corners.size(), 0.0);
     std::vector<double> sum(surface_.vertices.size(), 0.0), count(surface_.vertices.size(), 0.0);
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
@@ -193,8 +214,12 @@ class Fitting {
       }
     for (std::size_t v = 0; v < each.size(); ++v)
       if (const auto w = surface_.welded[v]; w != kNone && count[w] > 0) each[v] = 0 - sum[w] / count[w];
+    return Distances(std::move(each), std::move(at_corner));
+  }
+
+  OffsetResult offset_by_depths() const {
     OffsetOptions options = options_;
-    options.distance = Distances(std::move(each), std::move(at_corner));
+    options.distance = depths();
     return offset(mesh_, options);
   }
 
@@ -406,13 +431,22 @@ class Fitting {
   double gap_ = 0;  // the least gap of a triangle, but no more than what was wanted
 };
 
-}  // namespace
-
-OffsetResult fit(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options) {
+void require_usable(PolygonView other, double clearance) {
   if (!(clearance > 0) || !std::isfinite(clearance))
     throw InvalidInput("fit: expected a clearance above 0, got " + std::to_string(clearance));
   if (other.face_count() == 0) throw InvalidInput("fit: expected another mesh with faces, found none");
+}
+
+}  // namespace
+
+OffsetResult fit(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options) {
+  require_usable(other, clearance);
   return Fitting(mesh, other, clearance, options).run();
+}
+
+OffsetStatistics plan_fit(PolygonView mesh, PolygonView other, double clearance, const OffsetOptions& options) {
+  require_usable(other, clearance);
+  return Fitting(mesh, other, clearance, options).plan();
 }
 
 }  // namespace vdb_offset

@@ -19,12 +19,6 @@
 namespace vdb_offset {
 namespace {
 
-// Bytes that a vertex of the surface takes while a result in which much is held back is made valid (see
-// kVertexBytes).
-constexpr std::size_t kLimitBytes = 350;
-// And where the exact surface is known: a miter, the path that it stands for, and normals of six triangles' corners.
-constexpr std::size_t kExactBytes = 500;
-
 /// The paths of all vertices from those of the moving part's; all other vertices stay, as was asked.
 Paths paths_of_all(const MeshParts& parts, Paths of_part) {
   if (parts.part_vertex.empty()) return of_part;
@@ -49,6 +43,21 @@ Paths paths_of_all(const MeshParts& parts, Paths of_part) {
 
 bool is_open(const MeshFacts& facts) { return !facts.closed() || !facts.oriented(); }
 
+/// What the run takes besides its grid and the moving part.
+RunBytes bytes_of_run(const MeshParts& parts, PolygonView mesh, const OffsetOptions& options, const Yield& yield) {
+  const Surface& surface = parts.surface();
+  RunBytes bytes{options.bytes_held, result_bytes(surface) + further_bytes(mesh.positions.size(), yield.results) +
+                                         layers_bytes(mesh, surface, yield.layers)};
+  for (const auto* more : {&parts.whole, &parts.rest, &parts.obstacles})
+    if (*more) bytes.always += surface_bytes(**more);
+  if (options.exact) bytes.always += exact_bytes(mesh.positions.size());
+  if (options.keep_field) bytes.always += kVdbModuleBytes;
+  if (options.keep_paths) bytes.after_grid += paths_bytes(mesh.positions.size(), yield.results);
+  if (options.off_source) bytes.after_grid += shell_bytes(mesh, surface);
+  if (yield.has_targets) bytes.after_grid += refinement_bytes(mesh, surface);
+  return bytes;
+}
+
 }  // namespace
 
 void require_usable(PolygonView mesh, std::span<const Distances> distances, const OffsetOptions& options) {
@@ -62,14 +71,8 @@ void require_usable(PolygonView mesh, std::span<const Distances> distances, cons
 
 GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthest, const OffsetOptions& options,
                   int threads, const Yield& yield) {
-  std::size_t beside = layers_bytes(mesh, yield.layers) + results_bytes(mesh, yield.results);
-  for (const auto* surface : {&parts.whole, &parts.rest, &parts.obstacles})
-    if (*surface) beside += surface_bytes(**surface);
-  if (options.collision == Collision::Limit || options.corners == Corners::Miter)
-    beside += kLimitBytes * parts.surface().vertices.size();
-  if (options.exact) beside += kExactBytes * mesh.positions.size();
-  if (options.keep_paths) beside += yield.results * kPathBytes * mesh.positions.size();
-  return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads, {beside});
+  return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads,
+                   {bytes_of_run(parts, mesh, options, yield), !yield.has_targets});
 }
 
 WeldOptions weld_for(const OffsetOptions& options, const Yield& yield) {

@@ -181,7 +181,7 @@ void require_together(const CommandLine& line, bool is_iso) {
   require_without(line, axes, "--distance-xy", {"--fit"});
   instead_of_distance(fit, "--fit");
   require(!fit || !is_iso, "--mode iso and --fit exclude each other");
-  require_without(line, fit, "--fit", {"--dry-run", "--collision", "--corners"});
+  require_without(line, fit, "--fit", {"--collision", "--corners"});
   require_with(line, line.has("--clearance"), "--clearance", {"--fit"});
   require_with(line, fit || line.has("--obstacle"), "--obstacle or --fit", {"--clearance"});
   require_with(line, line.has("--shell"), "--shell", {"--inner"});

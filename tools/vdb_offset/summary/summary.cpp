@@ -52,14 +52,18 @@ std::string range_of(const Distances& distances) {
   return fmt::format("{:.9g} inward to {:.9g} outward", distances.inward(), distances.outward());
 }
 
-void print_plan(std::FILE* out, const OffsetStatistics& statistics, const Distances& distances) {
+void print_grid(std::FILE* out, const OffsetStatistics& statistics) {
   const GridPlan& plan = statistics.plan;
-  fmt::print(out, "distance   {}\n", range_of(distances));
   if (plan.voxel_size == 0) return;
   fmt::print(out, "voxel size {:.6g} ({})\n", plan.voxel_size, plan.reason);
   fmt::print(out, "estimate   {} leaf nodes, {} voxels, {:.1f} MiB, {:.2g} s on {} thread{}\n", plan.leaf_nodes,
              plan.voxels, static_cast<double>(plan.bytes) / 1048576.0, plan.seconds, statistics.threads,
              statistics.threads == 1 ? "" : "s");
+}
+
+void print_plan(std::FILE* out, const OffsetStatistics& statistics, const Distances& distances) {
+  fmt::print(out, "distance   {}\n", range_of(distances));
+  print_grid(out, statistics);
 }
 
 void print_planes(std::FILE* out, const BorderFacts& borders) {
@@ -214,6 +218,19 @@ void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Dis
   print_plan(out, statistics, farthest);
   print_seams(out, statistics.facts.seams, std::abs(farthest.farthest()));
   if (!job.curves()) print_orientation(out, statistics.facts, job.options.orient);
+}
+
+void print_fit_dry_run(const Job& job, const OffsetStatistics& statistics) {
+  const Printout out;
+  const FitFacts& fit = *statistics.fit;
+  print_facts(out, statistics.facts);
+  fmt::print(out, "fit        the least gap is {:.6g}; {} triangles are nearer than {:g}", fit.starting_gap,
+             fit.near_at_start, fit.clearance);
+  if (fit.deepest > 0) fmt::print(out, ": the first round goes up to {:.6g} inward", fit.deepest);
+  fmt::print(out, "\n");
+  if (statistics.plan.voxel_size > 0) print_grid(out, statistics);
+  else fmt::print(out, "estimate   {:.1f} MiB\n", static_cast<double>(statistics.plan.bytes) / 1048576.0);
+  print_orientation(out, statistics.facts, job.options.orient);
 }
 
 void print_summary(const Job& job, const Outcome& outcome, const Products& made, double total_seconds) {

@@ -18,6 +18,8 @@ namespace vdb_offset::tool {
 
 /// What --dry-run prints: the mesh's facts and the plan.
 void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Distances& farthest);
+/// The same with --fit. \pre `statistics` are those of plan_fit()
+void print_fit_dry_run(const Job& job, const OffsetStatistics& statistics);
 
 /// What is printed of one output; with --verbose all that is known of the mesh and the grid. Goes to standard output
 /// unless the mesh does.
