@@ -202,6 +202,7 @@ struct OffsetStatistics {
   std::array<double, kStageCount> seconds{};  ///< By Stage.
   std::array<std::size_t, kVertexStateCount> vertices_by_state{};
   std::size_t straight_vertices = 0;
+  double rounding = 0;  ///< Of meshes: most that a coordinate changes by when it is written, world units.
   std::size_t disagreeing_distances = 0;  ///< Vertices welded with one that was given another distance; of
                                           ///< layers, at the height with the most.
   LimitStatistics limit;

@@ -40,7 +40,7 @@ TEST_CASE("plan: a given size is taken as it is", "[plan]") {
 
 TEST_CASE("plan: what does not fit is refused with the size that would", "[plan]") {
   const Surface sphere = surface_of(scene::icosphere(1, 4));
-  const std::size_t budget = 64 << 20;  // of which the process itself takes 16
+  const std::size_t budget = 64 << 20;  // of which the process itself takes 17
   CHECK_THROWS_WITH(plan_grid(sphere, 0.5, {1e-3, {}}, budget, 1),
                     Catch::Contains("64 MiB") && Catch::Contains("would fit"));
   CHECK_THROWS_AS(plan_grid(sphere, 0.5, {1e-9, {}}, 0, 1), OutOfBudget);  // too many voxels across for any memory

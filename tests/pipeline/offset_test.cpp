@@ -4,6 +4,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "support/oracles.h"
@@ -325,10 +326,26 @@ TEST_CASE("offset: states are honest where coordinates are too coarse for the di
   const Polygons cube = transformed(scene::box(Vec3d(1), 2, true), [](const Vec3d& p) { return p + Vec3d(1e10); });
   const OffsetResult result = offset(cube.view(), by(1e-3));  // a coordinate's last bit is worth 2e-6 here
   const auto errors = judge(cube.view(), result, 1e-3, 1, false);
-  CHECK(errors.worst_reached <= 1e-6);
+  // What is as near as its coordinates can be has arrived, as far as rounding goes, which is handed out.
+  const double rounding = std::sqrt(3.0) * 1e10 * std::numeric_limits<double>::epsilon() / 1e-3;
+  CHECK(errors.worst_reached > 1e-6);
+  CHECK(errors.worst_reached <= rounding);
   CHECK(errors.worst_told <= 1e-9);
-  CHECK(errors.worst_beyond < 1e-2);  // the rounding itself
-  CHECK(share(result, VertexState::Reached) < 1);
+  CHECK(errors.worst_beyond < 1e-2);
+  CHECK(share(result, VertexState::Reached) == 1);
+  CHECK(result.statistics.rounding == Approx(0x1p-53 * (1e10 + 0.5)));
+}
+
+TEST_CASE("offset: coordinates that the output cannot hold are refused", "[offset]") {
+  const Polygons far = transformed(scene::icosphere(1, 2), [](const Vec3d& p) { return p + Vec3d(1e7, 0, 0); });
+  OffsetOptions options = by(0.5);
+  CHECK(share(offset(far.view(), options), VertexState::Reached) == 1);
+  options.precision.kind = Precision::Kind::Single;  // whose last bit is worth 1 here
+  CHECK_THROWS_WITH(offset(far.view(), options), Catch::Contains("of the distance, 0.5"));
+  options.distance = 1000;
+  CHECK_NOTHROW(offset(far.view(), options));
+  const Polygons farther = transformed(scene::icosphere(1, 2), [](const Vec3d& p) { return p + Vec3d(1e9, 0, 0); });
+  CHECK_THROWS_WITH(offset(farther.view(), options), Catch::Contains("diagonal"));
 }
 
 TEST_CASE("offset: vertices at one position stay together", "[offset]") {

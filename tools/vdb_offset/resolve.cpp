@@ -137,7 +137,7 @@ Precision precision_of(const Job& job) {
 
 // Bytes for each byte of a file: its text, what is noted of it to write it again, and the text written; and for that of
 // a shell, which has two skins. Measured.
-constexpr double kBytesOfFileByte = 3.3, kShellBytesOfFileByte = 5.3;
+constexpr double kBytesOfFileByte = 4.2, kShellBytesOfFileByte = 5.5;
 // Bytes for each cell while a folder of OpenFOAM's is made, with the faces between cells, or a CGNS file. Measured.
 constexpr std::size_t kFoamCellBytes = 66, kCgnsCellBytes = 30;
 

@@ -8,7 +8,7 @@ namespace {
 
 // Bytes for a triangle and a vertex of a surface, for a vertex of the input, and for a triangle while its result is
 // made valid.
-constexpr std::size_t kTriangleBytes = 130, kVertexBytes = 260, kInputVertexBytes = 12, kJudgedTriangleBytes = 65;
+constexpr std::size_t kTriangleBytes = 130, kVertexBytes = 260, kInputVertexBytes = 12, kJudgedTriangleBytes = 90;
 // Bytes that each further result takes for a vertex: positions, paths, states and what a warm start of a nearer one
 // needs; and while it is made valid. And for itself, whatever the mesh.
 constexpr std::size_t kResultVertexBytes = 105, kJudgedVertexBytes = 95, kResultBytes = 4500;
@@ -20,7 +20,7 @@ constexpr std::size_t kPathBytes = 520;
 // Bytes of a shell for a vertex of the input and for a triangle.
 constexpr std::size_t kShellVertexBytes = 230, kShellTriangleBytes = 120;
 // Bytes for a vertex of the input and for a triangle of a mesh whose faces are split.
-constexpr std::size_t kRefinedVertexBytes = 250, kRefinedTriangleBytes = 480;
+constexpr std::size_t kRefinedVertexBytes = 250, kRefinedTriangleBytes = 520;
 // Bytes of a vertex on an exact surface: a miter, the path that it stands for, and normals of six triangles' corners.
 constexpr std::size_t kExactBytes = 500;
 

@@ -359,8 +359,8 @@ void slide_borders(MeshParts& parts, const BorderSlides& slides, const ClosestQu
     if (!paths.trace.empty()) paths.trace[f].clear();
     paths.achieved[f] = closest.distance;
     paths.closest[f] = closest.triangle;
-    paths.state[f] = std::abs(paths.achieved[f] - target) <= kReachedTolerance * target ? VertexState::Reached
-                                                                                        : VertexState::Collision;
+    const double tolerance = kReachedTolerance * target + position.length() * std::numeric_limits<double>::epsilon();
+    paths.state[f] = std::abs(paths.achieved[f] - target) <= tolerance ? VertexState::Reached : VertexState::Collision;
   };
   for_each_index(border.size(), move, 16);
 }

@@ -222,9 +222,14 @@ class Marches {
       ends.push_back({static_cast<std::uint32_t>(v), stop, {known_end(set, v), arrival_[set][v].triangle}});
   }
 
-  static VertexState state_at(double distance, const StopDistance& stop) {
-    return std::abs(distance - stop.distance) <= kReachedTolerance * stop.distance ? VertexState::Reached
-                                                                                   : VertexState::Collision;
+  /// How far off the vertex may be because its coordinates are rounded.
+  double rounding(std::size_t v) const {
+    return (surface_.vertices[v] + surface_.origin).length() * std::numeric_limits<double>::epsilon();
+  }
+
+  VertexState state_at(double distance, const StopDistance& stop, std::size_t v) const {
+    const double off = std::abs(distance - stop.distance);
+    return off <= kReachedTolerance * stop.distance + rounding(v) ? VertexState::Reached : VertexState::Collision;
   }
 
   Vec3d known_end(std::size_t set, std::size_t v) const {
@@ -239,13 +244,12 @@ class Marches {
   bool end_known(const StopDistance& stop, std::size_t v) const {
     const KnownEnd& end = arrival_[stop.set][v];
     const Vec3d& start = surface_.vertices[v];
-    const double rounding = (start + surface_.origin).length() * std::numeric_limits<double>::epsilon();
-    if (rounding > kStopTolerance * stop.distance || known_end(stop.set, v) != end.position) return false;
+    if (rounding(v) > kStopTolerance * stop.distance || known_end(stop.set, v) != end.position) return false;
     Paths& paths = paths_[stop.set];
     paths.displacement[v] = round_displacement(end.position - start, stop.distance);
     paths.achieved[v] = end.distance;
     paths.closest[v] = end.triangle;
-    paths.state[v] = state_at(end.distance, stop);
+    paths.state[v] = state_at(end.distance, stop, v);
     return true;
   }
 
@@ -288,7 +292,7 @@ class Marches {
       const auto& [v, stop, end] = ends[i];
       paths_[stop.set].achieved[v] = closest[i].distance;
       paths_[stop.set].closest[v] = closest[i].triangle;
-      const VertexState state = state_at(closest[i].distance, stop);
+      const VertexState state = state_at(closest[i].distance, stop, v);
       const bool left = end.outside_field && state == VertexState::Collision;
       paths_[stop.set].state[v] = left ? VertexState::OutsideField : state;
     }

@@ -201,6 +201,8 @@ class ResultMaker {
       if (options_.keep_face_errors) result.face_errors = measure_each_face(faces, mesh_.mesh().face_count());
     }
     result.face_faults = draft.face_faults;
+    result.statistics.rounding =
+        Rounding(options_.precision).half_unit() * farthest_coordinate(result.statistics.facts);
     if (mesh_.exact()) result.statistics.exact = measure_exactness(mesh_, draft.marched, result);
     return result;
   }

@@ -8,6 +8,7 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/memory.h"
+#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/base/stage_timer.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/field/grid_plan.h"
@@ -71,6 +72,10 @@ void require_usable(PolygonView mesh, std::span<const Distances> distances, cons
 
 GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthest, const OffsetOptions& options,
                   int threads, const Yield& yield) {
+  const MeshFacts& facts = parts.moving_part.facts;
+  const double rounding = Rounding(options.precision).half_unit() * farthest_coordinate(facts);
+  require_fine_coordinates(rounding, std::max(farthest.inside, farthest.outside), "the distance");
+  require_fine_coordinates(rounding, facts.diagonal, "the mesh's diagonal");
   return plan_grid(parts.moving_part, farthest, options.grid, options.max_memory, threads,
                    {bytes_of_run(parts, mesh, options, yield), !yield.has_targets});
 }

@@ -124,6 +124,17 @@ void print_source_crossings(std::FILE* out, const Job& job, const OffsetStatisti
                pairs, beside, has_all_digits(job) ? "" : " (a copy of the input as OBJ has more digits)");
 }
 
+/// Where the file's coordinates are too coarse for distances to be met to a hundredth, as faces are judged.
+void print_rounding(std::FILE* out, double rounding, double distance) {
+  constexpr double kWorthSaying = 0.01;
+  if (rounding <= kWorthSaying * distance) return;
+  fmt::print(
+      out,
+      "coordinates as large as these are rounded by {:.2g}, {:.0f} % of the distance: move the model to the origin, "
+      "or write a format with more digits\n",
+      rounding, 100 * rounding / distance);
+}
+
 }  // namespace
 
 std::string planes_in_words(std::span<const SymmetryPlane> planes) {
@@ -202,6 +213,7 @@ std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
 }
 
 void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statistics, const Distances& distances) {
+  print_rounding(out, statistics.rounding, std::abs(distances.farthest()));
   print_seams(out, statistics.facts.seams, std::abs(distances.farthest()));
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
   if (in(VertexState::Limited) + in(VertexState::Collision) > 0) print_slivers(out, statistics.facts);
