@@ -74,6 +74,9 @@ VDB_OFFSET_API void write_file(const std::string& path, const std::function<void
 /// Writes bytes to `path` through replace_file(). "-" is standard output. \throw WriteError
 VDB_OFFSET_API void write_file(const std::string& path, std::string_view bytes);
 
+/// Removes temporary files that runs on this machine have left in a folder as they were killed.
+VDB_OFFSET_API void remove_stale_temporaries(const std::filesystem::path& folder) noexcept;
+
 /// Removes all temporary files and folders that are there now; no others can be put in place from then on. For signal
 /// handlers that end the process. False, and nothing is removed, if files are being put in place.
 VDB_OFFSET_API bool remove_temporaries() noexcept;

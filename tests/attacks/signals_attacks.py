@@ -2,6 +2,7 @@
 """Signals: any phase ends at once, by the signal, and every output is as it was before, or complete."""
 import json
 import os
+import pathlib
 import random
 import resource
 import shutil
@@ -35,7 +36,7 @@ KINDS = {
               ['r.json', 's.csv', 'p.html']),
     'curves': (['c.txt', 'o.svg', '-d', '0.01', '--report', 'r.json'], ['o.svg', 'r.json']),
 }
-KILLS = 14  # of each kind
+KILLS = int(os.environ.get('VDB_OFFSET_KILLS', 14))  # of each kind
 
 
 def make_inputs(place):
@@ -176,3 +177,56 @@ def ignored_signals_stay_so(place):
     process.send_signal(signal.SIGHUP)
     process.communicate()
     place.check(process.returncode == 0, f'exit {process.returncode}')
+
+
+def children_of(process):
+    """Numbers of the processes that it has begun."""
+    try:
+        return [int(child) for child in pathlib.Path(f'/proc/{process.pid}/task/{process.pid}/children').read_text().split()]
+    except OSError:  # it has ended
+        return []
+
+
+@attack
+def a_model_of_a_batch_is_killed(place):
+    """What is killed in a batch leaves nothing beside its outputs."""
+    place.file('in/m.obj', models.sphere(60, 40))
+    arguments = ['batch', 'in', 'out', '-d', '2%', '--states', '{model}.csv', '--save-vdb', '{model}.vdb', '--retry-failed']
+    began = time.monotonic()
+    place.ended_well(place.run(*arguments), 0)
+    length, names = time.monotonic() - began, place.names()
+    chance = random.Random(1)
+    for _ in range(2 if place.sanitized else KILLS):
+        shutil.rmtree(place.folder / 'out')
+        process = place.start(*arguments)
+        time.sleep(chance.uniform(0.5, 1) * length)
+        for child in children_of(process):
+            os.kill(child, signal.SIGKILL)
+        process.communicate(timeout=60)
+        place.check(process.returncode in (0, 3), f'exit {process.returncode}')
+        left = set(place.names()) - set(names)
+        place.check(not left, f'left {left}')
+    place.ended_well(place.run(*arguments), 0)
+    place.check(place.names() == names, f'expected {names}, got {place.names()}')
+
+
+@attack_each({'ended': signal.SIGTERM, 'interrupted': signal.SIGINT, 'killed': signal.SIGKILL})
+def batches_killed_at_any_moment(place, by):
+    """A batch that ends goes on where it was, and every output is complete or not there."""
+    for i in range(3):
+        place.file(f'in/{i}.obj', models.sphere(40, 30))
+    arguments = ['batch', 'in', 'out', '-d', '2%']
+    began = time.monotonic()
+    place.ended_well(place.run(*arguments), 0)
+    length, outputs = time.monotonic() - began, [f'out/{i}.obj' for i in range(3)]
+    right = contents(place, outputs)
+    chance = random.Random(int(by))
+    for _ in range(2 if place.sanitized else KILLS):
+        shutil.rmtree(place.folder / 'out', ignore_errors=True)
+        process = place.start(*arguments)
+        time.sleep(chance.uniform(0, 1.05) * length)
+        place.end(process, by)
+        for name in outputs:
+            place.check(not (place.folder / name).exists() or content(place, name) == right[name], f'{name} is not complete')
+        place.ended_well(place.run(*arguments), 0)
+        place.check(contents(place, outputs) == right, 'expected the outputs of a batch that nobody disturbed')

@@ -39,9 +39,6 @@ class Temporary {
 /// writers choose a format by it. Its permissions follow the process's mask. \throw WriteError, which names `path`
 Temporary new_temporary_file(const std::filesystem::path& target, const std::string& path);
 
-/// Removes files of new_temporary_file() that runs on this machine have left in a folder as they were killed.
-void remove_stale_temporaries(const std::filesystem::path& folder) noexcept;
-
 /// While it lives, remove_temporaries() does nothing. One at a time: others wait, and for ever once the process ends.
 class PuttingInPlace {
  public:

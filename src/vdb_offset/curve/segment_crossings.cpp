@@ -34,12 +34,14 @@ bool overlap_from(const Vec2d& p, const Vec2d& b, const Vec2d& d) {
 using Found = tbb::enumerable_thread_specific<std::vector<SegmentPair>>;
 
 constexpr const char* kCrossings = "crossings";  // begins a refusal
+// Bytes of a list that memory is not asked for. Reasoned: to ask takes longer than to find so few pairs.
+constexpr std::size_t kSmallList = std::size_t{1} << 20;
 
 std::vector<SegmentPair> gather(const Found& found) {
   std::vector<SegmentPair> all;
   std::size_t count = 0;
   for (const auto& some : found) count += some.size();
-  require_memory(count * sizeof(SegmentPair), kCrossings);
+  if (count * sizeof(SegmentPair) > kSmallList) require_memory(count * sizeof(SegmentPair), kCrossings);
   all.reserve(count);
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   std::sort(all.begin(), all.end());

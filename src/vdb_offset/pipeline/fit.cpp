@@ -190,12 +190,10 @@ class Fitting {
  private:
   FitFacts facts_at_start() {
     measure_gaps(mesh_.positions);
-    FitFacts facts;
-    facts.clearance = clearance_;
-    facts.is_signed = other_.is_solid();
-    facts.starting_gap = least_gap(mesh_.positions);
-    facts.near_at_start = short_;
-    return facts;
+    return {.clearance = clearance_,
+            .starting_gap = least_gap(mesh_.positions),
+            .near_at_start = short_,
+            .is_signed = other_.is_solid()};
   }
 
   /// How far vertices go, and where parts meet the corners of faces, by what their parts have to.

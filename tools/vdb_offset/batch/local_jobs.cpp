@@ -15,6 +15,7 @@
 
 #include "batch/process/stop.h"
 #include "job.h"
+#include "vdb_offset/output_files.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
@@ -69,6 +70,12 @@ void allow_files_for(std::size_t jobs) {
 
 bool ended_by_stop(const Ending& ending) {
   return ending.exit_code == 128 + SIGINT || ending.exit_code == 128 + SIGTERM || ending.exit_code == 128 + SIGHUP;
+}
+
+/// What a model that was killed has left beside its outputs.
+void remove_leftovers(const ModelRun& run) {
+  for (const auto* const paths : {&run.written, &run.reports})
+    for (const std::string& path : *paths) remove_stale_temporaries(replaced_path(path).parent_path());
 }
 
 }  // namespace
@@ -211,6 +218,7 @@ bool LocalJobs::read_news(Job& job) {
 
 void LocalJobs::end(Job& job, const Ended& ended) {
   Ending ending = job.child.wait();
+  if (ending.exit_code > 128) remove_leftovers(job.run);
   ending.seconds = seconds_since(job.begun) - job.waited;
   // Ctrl-C goes to the models as well, and they may be faster.
   pollfd stopped{stop_descriptor(), POLLIN, 0};
