@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes small meshes of every kind that the readers know to FOLDER/obj, off, ply, stl, gltf, glb, and numbers of three
-// vertices to FOLDER/numbers, curves to FOLDER/curves, and 3MF's model parts to FOLDER/threemf: what fuzzing starts
-// from.
+// vertices to FOLDER/numbers, curves to FOLDER/curves, 3MF's model parts to FOLDER/threemf, and options to
+// FOLDER/toml: what fuzzing starts from.
 
 #include <algorithm>
 #include <cstdint>
@@ -338,6 +338,14 @@ void threemf_seeds() {
   write("archive.threemf", '\10' + archive);
 }
 
+void toml_seeds() {
+  odd_seed("options.toml",
+           "distance = \"1%\"\nshell = true # closed\nthreads = 2\n'jobs' = 0x2\nonly = [\"a\", 'b', \"\"]\n");
+  odd_seed("table.toml",
+           "[batch]\nreports = false\ntext = \"\"\"a\nb\\u00e9\"\"\"\n[[part]]\nat = {x.y = 1e-3, z = [1, [2.5]]}\n");
+  odd_seed("dates.toml", "a.b.c = 1979-05-27T07:32:00.5-07:00\nd = 07:32:00\ne = +inf\nf = -nan\ng = 0b11_01\n");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -362,6 +370,7 @@ int main(int count, char** arguments) {
     numbers_seeds();
     curves_seeds();
     threemf_seeds();
+    toml_seeds();
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 4;

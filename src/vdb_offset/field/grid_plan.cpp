@@ -23,6 +23,8 @@ constexpr double kMaxVoxelsAcross = 8388608;
 // Bytes for a leaf node: phi, closest triangle and direction of each voxel; the three leaf nodes themselves; and what
 // the allocator keeps of the sweep's closest points. Measured in all: 12,400 to 13,300.
 constexpr std::size_t kLeafBytes = std::size_t{kLeafVoxels} * (4 + 4 + 12) + 3 * 192 + 2500;
+// For what the allocator leaves unused. Measured: without, 6 of 396 runs take up to 1.07 times the estimate.
+constexpr double kSlack = 1.07;
 // Seconds of one thread, measured on scans of 60,000 to 1.4 million triangles. Only the estimate that is shown uses
 // them.
 constexpr double kLeafSeconds = 8e-5, kTriangleSeconds = 2e-6, kVertexSeconds = 1.8e-5;
@@ -39,7 +41,7 @@ GridPlan estimate(const Surface& surface, const Reach& farthest, double h, int t
                triangles = static_cast<double>(surface.triangles.size());
   const double always = static_cast<double>(kProcessBytes + surface_bytes(surface) + context.bytes.always),
                after_grid = static_cast<double>(context.bytes.after_grid);
-  const double bytes = always + std::max(leaves * kLeafBytes, after_grid);
+  const double bytes = kSlack * (always + std::max(leaves * kLeafBytes, after_grid));
   if (bytes > 0x1p62) {  // such a plan is refused; the casts below must not overflow
     plan.bytes = plan.leaf_nodes = plan.voxels = std::size_t{1} << 62;
     return plan;

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <fstream>
 #include <string_view>
@@ -12,6 +11,7 @@
 
 #include "request/option_values.h"
 #include "request/request.h"
+#include "request/toml_parser.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::tool {
@@ -81,8 +81,9 @@ ConfigEntry entry_of(std::string_view name, const toml::node& node, const std::s
 
 }  // namespace
 
-std::vector<ConfigEntry> read_config(const std::string& path) {
-  const std::string text = read_text(path);
+std::vector<ConfigEntry> read_config(const std::string& path) { return parse_config(path, read_text(path)); }
+
+std::vector<ConfigEntry> parse_config(const std::string& path, const std::string& text) {
   require_shallow_keys(text, path);
   std::vector<ConfigEntry> entries;
   try {

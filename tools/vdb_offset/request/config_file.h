@@ -18,5 +18,7 @@ struct ConfigEntry {
 /// Reads options from a file in TOML: names with a string, a number, true or false, or an array of strings and numbers.
 /// \throw UsageError with the line for a file that is none, or cannot be read
 std::vector<ConfigEntry> read_config(const std::string& path);
+/// The same from what such a file holds; `path` is for messages.
+std::vector<ConfigEntry> parse_config(const std::string& path, const std::string& text);
 
 }  // namespace vdb_offset::tool

@@ -19,10 +19,6 @@
 
 namespace vdb_offset::tool {
 
-void require(bool holds, const std::string& message) {
-  if (!holds) throw UsageError(message);
-}
-
 std::size_t parse_word(const char* option, const std::string& text, std::initializer_list<const char*> words) {
   const auto word = std::find(words.begin(), words.end(), text);
   if (word != words.end()) return static_cast<std::size_t>(word - words.begin());

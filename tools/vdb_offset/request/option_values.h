@@ -23,7 +23,9 @@ constexpr int kMostThreads = 4096;
 constexpr int kMostDigits = 17;
 
 /// \throw UsageError with the message unless the condition holds.
-void require(bool holds, const std::string& message);
+inline void require(bool holds, const std::string& message) {
+  if (!holds) throw UsageError(message);
+}
 
 /// Which of some words a text is, counted from 0.
 std::size_t parse_word(const char* option, const std::string& text, std::initializer_list<const char*> words);
