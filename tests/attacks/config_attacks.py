@@ -133,3 +133,20 @@ def what_the_line_says_of_the_distance_counts_for_all_that_the_file_says(place):
     place.ended_well(place.run(*ONE), 0)
     place.ended_well(place.run(*ONE, '--distance-xy', '0.1', '--distance-z', '0.2', '--strict=false'), 0)
     place.check(place.names() == ['all.toml', 'box.obj', 'o.obj'], 'expected that what is for batch is passed over')
+
+
+@attack
+def a_batch_spares_its_file_of_options(place):
+    place.box('in/a.obj')
+    for path, name in (('out/a.obj', 'out/a.obj'), ('out/a.json', 'house.toml')):
+        text = 'distance = 0.1\n'
+        place.file(path if name == path else 'house.toml', text)
+        if name != path:
+            (place.folder / path).unlink(missing_ok=True)
+            os.link(place.folder / name, place.folder / path)
+        place.refused(place.run('batch', 'in', 'out', '--config', name, '--report', '{model}.json'), 1,
+                      'a.obj: expected outputs beside the file of --config, got')
+        place.check((place.folder / name).read_text() == text, 'expected the file of options as it was')
+        (place.folder / path).unlink()
+    place.file('out/batch.csv', 'distance = 0.1\n')
+    place.refused(place.run('batch', 'in', 'out', '--config', 'out/batch.csv'), 1, 'expected another file than the table')

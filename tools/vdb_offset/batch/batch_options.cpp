@@ -103,6 +103,7 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
   require(request.sshlogin.empty() || request.partition.empty(),
           "--slurm: expected to be given without --sshlogin, got both");
   if (line.has("--max-memory")) request.max_memory = draft.request.max_memory;
+  request.config = line.config();
   request.threads_given = line.has("--threads");
   request.dry_run = draft.request.dry_run;
   request.quiet = draft.request.quiet;

@@ -14,6 +14,7 @@ namespace vdb_offset::tool {
 struct BatchRequest {
   std::string folder, out;                 ///< Absolute.
   std::string output = "{model}{ending}";  ///< The pattern of the outputs' names.
+  std::string config;                      ///< The file of options; empty: none.
   std::vector<std::string> selection;      ///< Patterns of the models' names; empty: by their endings.
   std::vector<GivenOption> each;           ///< Options of vdb_offset, for each model.
   std::optional<int> jobs;                 ///< Models at once, on each machine.
