@@ -268,6 +268,28 @@ TEST_CASE("fit: nothing moves where there is room, and what has none is told", "
   CHECK_THROWS_AS(fit(sphere.view(), Polygons().view(), 0.1, {}), InvalidInput);
 }
 
+TEST_CASE("fit: an end that is just far enough stays flat", "[fit]") {
+  // Its wall gives way, its end is at the clearance: what would lack is rounding.
+  Polygons peg = scene::cylinder(0.95, 3, kFacets, 24, 6), socket = sleeve(1, 2, 0.5);
+  const double floor = std::min_element(peg.positions.begin(), peg.positions.end(), [](const Vec3d& a, const Vec3d& b) {
+                         return a[2] < b[2];
+                       })->z();
+  Polygons plate = scene::box(Vec3d(4, 4, 1), 1, true);
+  for (Vec3d& p : plate.positions) p[2] += floor - 0.1 - 0.5;
+  Polygons around = socket;
+  const auto first = static_cast<std::uint32_t>(socket.positions.size());
+  for (std::size_t f = 0; f < plate.face_count(); ++f) {
+    for (const auto v : plate.view().face(f)) around.corners.push_back(v + first);
+    around.face_begin.push_back(static_cast<std::uint32_t>(around.corners.size()));
+  }
+  around.positions.insert(around.positions.end(), plate.positions.begin(), plate.positions.end());
+  const OffsetResult result = fit(peg.view(), around.view(), 0.1, {});
+  CHECK(result.statistics.fit->near == 0);
+  CHECK(result.statistics.fit->moved > 0);
+  for (std::size_t v = 0; v < peg.positions.size(); ++v)
+    if (peg.positions[v][2] == floor) CHECK(result.positions[v][2] == floor);
+}
+
 TEST_CASE("fit: the plan is that of the first round", "[fit]") {
   const Polygons peg = scene::cylinder(1, 4, kFacets, 16, 3), socket = sleeve(1, 2, 1);
   const OffsetStatistics plan = plan_fit(peg.view(), socket.view(), 0.1, {});

@@ -154,23 +154,21 @@ class Fitting {
   /// What the first round would do.
   OffsetStatistics plan() {
     FitFacts facts = facts_at_start();
-    const bool goes_on = short_ > 0 && deepen();
+    if (short_ > 0) deepen();
     for (const double depth : depth_) facts.deepest = std::max(facts.deepest, depth);
-    OffsetOptions options = options_;
-    if (goes_on) options.distance = depths();
-    OffsetStatistics statistics = plan_offset(mesh_, options);
-    if (!goes_on) statistics.plan.bytes = kProcessBytes + options_.bytes_held;
+    OffsetStatistics statistics = plan_offset(mesh_, to_depths());
+    if (facts.deepest == 0) statistics.plan.bytes = kProcessBytes + options_.bytes_held;
     statistics.fit = facts;
     return statistics;
   }
 
   OffsetResult run() {
-    OffsetResult best = offset_by_depths();
+    OffsetResult best = offset(mesh_, to_depths());
     FitFacts facts = facts_at_start();
     auto best_so_far = std::pair(short_, -gap_);
     std::size_t fruitless = 0;
     for (std::size_t round = 0; short_ > 0 && round < kMostOffsets && fruitless < kPatience && deepen(); ++round) {
-      OffsetResult next = offset_by_depths();
+      OffsetResult next = offset(mesh_, to_depths());
       facts.rounds = round + 1;
       find_stuck(next);
       measure_gaps(next.positions);
@@ -196,8 +194,8 @@ class Fitting {
             .is_signed = other_.is_solid()};
   }
 
-  /// How far vertices go, and where parts meet the corners of faces, by what their parts have to.
-  Distances depths() const {
+  /// Options with the distances of vertices and of corners of faces, by what their parts have to go.
+  OffsetOptions to_depths() const {
     std::vector<double> each(mesh_.positions.size(), 0.0), at_corner(mesh_.corners.size(), 0.0);
     std::vector<double> sum(surface_.vertices.size(), 0.0), count(surface_.vertices.size(), 0.0);
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
@@ -212,13 +210,9 @@ class Fitting {
       }
     for (std::size_t v = 0; v < each.size(); ++v)
       if (const auto w = surface_.welded[v]; w != kNone && count[w] > 0) each[v] = 0 - sum[w] / count[w];
-    return Distances(std::move(each), std::move(at_corner));
-  }
-
-  OffsetResult offset_by_depths() const {
     OffsetOptions options = options_;
-    options.distance = depths();
-    return offset(mesh_, options);
+    options.distance = Distances(std::move(each), std::move(at_corner));
+    return options;
   }
 
   /// Measures the gaps of triangles and vertices at positions as they will be written, and how far they have grown of
@@ -271,7 +265,11 @@ class Fitting {
     const std::vector<double> of_vertices = more_;
     for (std::uint32_t t = 0; t < near_.size(); ++t)
       if (near_[t].gap < wanted_) add_for_face(t, of_vertices);
-    for (std::size_t p = 0; p < depth_.size(); ++p) depth_[p] += more_[p];
+    for (std::size_t p = 0; p < depth_.size(); ++p) {
+      // What is far enough stays: a corner of faces of which one hardly moves has no miter.
+      if (depth_[p] == 0 && more_[p] < kFarEnough * clearance_) more_[p] = 0;
+      depth_[p] += more_[p];
+    }
     for (std::uint32_t t = 0; t < near_.size(); ++t) told_[t] = sum_at(t, more_);
     return std::any_of(more_.begin(), more_.end(), [](double more) { return more > 0; });
   }

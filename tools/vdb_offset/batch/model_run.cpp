@@ -144,8 +144,9 @@ void require_apart(const BatchRequest& request, std::span<const Model> models) {
   const std::string table = path_of_table(request.out), state = state_folder(request.out) + "/";
   std::map<std::string, const Model*> taken;
   std::set<std::pair<dev_t, ino_t>> files_of_models;
-  const auto of_config = request.config.empty() ? std::nullopt : identity_of(request.config);
-  if (of_config && of_config == identity_of(table))
+  std::set<std::pair<dev_t, ino_t>> config;  // none, or one
+  if (const auto identity = identity_of(request.config)) config.insert(*identity);
+  if (const auto identity = identity_of(table); identity && config.contains(*identity))
     throw UsageError(
         fmt::format("--config: expected another file than the table of the batch, got {}", request.config));
   for (const Model& model : models) {
@@ -160,7 +161,7 @@ void require_apart(const BatchRequest& request, std::span<const Model> models) {
       // By whatever link it is reached.
       if ((!is_new && !other->second) || (identity && files_of_models.contains(*identity)))
         throw UsageError(fmt::format("{}: expected outputs that are no models, got {}", model.path, path));
-      if (of_config && identity == of_config)
+      if (identity && config.contains(*identity))
         throw UsageError(fmt::format("{}: expected outputs beside the file of --config, got {}", model.path, path));
       if (path == table || path.starts_with(state))
         throw UsageError(fmt::format("{}: expected outputs beside the table and {}, got {}", model.path, state, path));
