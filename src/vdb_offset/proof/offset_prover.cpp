@@ -42,6 +42,9 @@ class OffsetProver::Recursion {
     may_keep_to_plane_ = triangle.may_keep_to_plane;
     list_ = std::move(near);
     face_away(piece);
+    if (is_proven_by_planes(piece, 0, list_.size(), may_keep_to_plane_ && keeps_to_plane(piece)))
+      return {Certainty::Proven, 0};
+    std::sort(list_.begin(), list_.end());
     return look_at(piece, 0, list_.size(), false);
   }
 
@@ -73,14 +76,9 @@ class OffsetProver::Recursion {
     const double length = normal_.length();
     if (!(length > 0) || list_.empty()) return;
     normal_ /= length;
-    double least = std::numeric_limits<double>::infinity();
-    Vec3d away(0.0);
-    for (const std::uint32_t t : list_) {
-      const TrianglePoint nearest = surface_.closest_on(t, whole.middle());
-      if (nearest.squared_distance >= least) continue;
-      least = nearest.squared_distance;
-      away = whole.middle() - nearest.point;
-    }
+    const Closest closest = query_(whole.middle(), list_.front());
+    closest_ = closest.triangle;
+    const Vec3d away = whole.middle() - closest.point;
     if (normal_.dot(away) < 0) normal_ = Vec3d(0.0) - normal_;
   }
 
@@ -118,10 +116,23 @@ class OffsetProver::Recursion {
     return true;
   }
 
+  /// Whether all of list_[begin .. end) lie so far below the piece's plane that no point is too near, and the triangle
+  /// that was nearest to begin with is a witness: a fan of thousands, which are all near, is told by that in most cases.
+  bool is_proven_by_planes(const Piece& piece, std::size_t begin, std::size_t end, bool none_too_far) const {
+    if (closest_ == kNone) return false;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) highest = std::max(highest, piece.least(i) - normal_.dot(piece.x[i]));
+    for (std::size_t i = begin; i < end; ++i)
+      for (const auto v : surface_.triangles[list_[i]])
+        if (normal_.dot(surface_.vertices[v]) > -highest) return false;
+    return none_too_far || is_witness(piece, closest_);
+  }
+
   /// Looks at a piece, whose triangles of the surface are list_[begin .. end).
   Proof look_at(const Piece& piece, std::size_t begin, std::size_t end, bool none_too_far) {
     if (++pieces_ > kMostPieces || depth_ > kMostHalvings) return {Certainty::Open, 0};
     none_too_far = none_too_far || (may_keep_to_plane_ && keeps_to_plane(piece));
+    if (is_proven_by_planes(piece, begin, end, none_too_far)) return {Certainty::Proven, 0};
     const Vec3d middle = piece.middle();
     double nearest = std::numeric_limits<double>::infinity();
     bool none_too_near = true;
@@ -193,6 +204,7 @@ class OffsetProver::Recursion {
   const ClosestQuery& query_;
   const Surface& surface_;
   Vec3d normal_{0.0};
+  std::uint32_t closest_ = kNone;  // the triangle of the surface that is nearest to the middle
   std::vector<std::uint32_t> list_;
   bool may_keep_to_plane_ = false;
   int pieces_ = 0, depth_ = 0;
@@ -212,7 +224,6 @@ Proof OffsetProver::operator()(const OffsetTriangle& triangle) const {
   query_.collect_together({&ball, 1}, [&](std::size_t, const NearTriangles& near) {
     for (std::size_t i = 0; i < near.size(); ++i) list.push_back(near.triangle(i));
   });
-  std::sort(list.begin(), list.end());
   return Recursion(query_).prove(triangle, std::move(list));
 }
 
