@@ -77,7 +77,8 @@ def hanging(count):
 
 
 @attack_each({'fan': (fan, 20000), 'shell of a fan': (fan, 10000, '--shell'), 'cone': (cone, 25000), 'two cones': (two_cones, 5000),
-              'around an edge': (book, 10000), 'hanging vertices': (hanging, 5000)})
+              'around an edge': (book, 10000), 'hanging vertices': (hanging, 5000),
+              'hanging vertices, split': (hanging, 2000, '--tolerance', '5%')})
 def around_one_place(place, case):
     """All pairs of boxes of such triangles meet."""
     shape, count, *more = case

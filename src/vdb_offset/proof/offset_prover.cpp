@@ -117,7 +117,8 @@ class OffsetProver::Recursion {
   }
 
   /// Whether all of list_[begin .. end) lie so far below the piece's plane that no point is too near, and the triangle
-  /// that was nearest to begin with is a witness: a fan of thousands, which are all near, is told by that in most cases.
+  /// that was nearest to begin with is a witness: a fan of thousands, which are all near, is told by that in most
+  /// cases.
   bool is_proven_by_planes(const Piece& piece, std::size_t begin, std::size_t end, bool none_too_far) const {
     if (closest_ == kNone) return false;
     double highest = -std::numeric_limits<double>::infinity();
