@@ -42,6 +42,7 @@ class VDB_OFFSET_API OutputFiles {
 
  private:
   struct File;
+  void require_one_each();
   void finish(File& file) const;
   void put_in_place(File& file) const;
   static void put_back(File& file);

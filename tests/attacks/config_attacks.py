@@ -42,6 +42,8 @@ FILES = {
     'letters behind a value': ('distance = 1 д\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
     'a table without a name': ('[ = 1\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
     'a date that goes on': ('a.b.c = 1979-05-27T09:32:00.5-КӚ\n', 1, '^vdb_offset: all.toml:1: expected TOML: '),
+    'a name cut by zero': ('distance = 0.1\nreport = "o.obj\\u0000x"\n', 1, 'all.toml:2: expected text without characters of code 0'),
+    'zero in a list': ('distance = ["0.1", "0.2\\u0000"]\n', 1, 'all.toml:1: expected text without characters of code 0'),
     'cut': ('distance = "1', 1, '^vdb_offset: all.toml:1: expected TOML: '),
     'large': ('# a\n' * 1000000, 1, 'all.toml: expected a file of options .TOML., got more than'),
     'several lines': ('distance = """1\n2"""\n', 1, 'distance'),
@@ -150,3 +152,17 @@ def a_batch_spares_its_file_of_options(place):
         (place.folder / path).unlink()
     place.file('out/batch.csv', 'distance = 0.1\n')
     place.refused(place.run('batch', 'in', 'out', '--config', 'out/batch.csv'), 1, 'expected another file than the table')
+
+
+@attack
+def a_batch_spares_what_other_models_read(place):
+    for name in ('a', 'a_x'):
+        place.box(f'in/{name}.obj')
+        place.file(f'in/{name}.txt', '0.1\n' * 8)
+    place.refused(place.run('batch', 'in', '.', '--distance-from', '{model}.txt', '--output', 'o/{model}.ply', '--report', 'in/{model}_x.txt'),
+                  1, 'a.obj: expected outputs that are no models, nor read with them, got .*a_x.txt')
+    os.makedirs(place.folder / 'out')
+    os.symlink('../in/a.obj', place.folder / 'out/batch.csv')
+    before = (place.folder / 'in/a.obj').read_bytes()
+    place.refused(place.run('batch', 'in', 'out', '-d', '0.1'), 1, 'batch.csv: expected a table, got a file that is read')
+    place.check((place.folder / 'in/a.obj').read_bytes() == before, 'expected the model as it was')

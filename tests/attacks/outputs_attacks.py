@@ -188,3 +188,21 @@ def report_and_summary_are_not_mixed(place):
         run = place.run('box.obj', name, '--format', 'obj', '-d', '0.1')
         place.ended_well(run, 0)
         place.check(b'reached' not in run.out and b'reached' in run.err, 'expected nothing but a mesh', run)
+
+
+# A report in the place of what is written beside a .gltf.
+@attack_each({'numbers of a layer': 'box.gltf sub/o.gltf --layers 2 --first-height 0.1 --report sub/o_001.bin',
+              'a copied image': 'box.gltf sub/o.gltf -d 0.1 --report sub/red.png',
+              'numbers beside a packed one': 'box.gltf sub/o.gltf.gz -d 0.1 --report sub/o.gltf.gz_1.bin'})
+def nothing_is_written_twice(place, line):
+    set_up(place)
+    before = contents(place)
+    place.refused(place.run(*line.split()), 4, 'expected a file of its own')
+    place.check(contents(place) == before, 'expected nothing written')
+
+
+@attack
+def an_image_of_several_outputs_is_copied_once(place):
+    set_up(place)
+    place.ended_well(place.run('box.gltf', 'sub/o{i}.gltf', '-d', '0.1', '-d', '0.2'), 0)
+    place.check((place.folder / 'sub/red.png').read_bytes() == b'an image', 'expected a copy')

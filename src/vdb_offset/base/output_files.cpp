@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "vdb_offset/base/temporary.h"
@@ -26,6 +28,12 @@ struct Descriptor {
 };
 
 std::string reason() { return std::strerror(errno); }
+
+bool are_same(const std::string& path, const std::string& other) {
+  std::ifstream one(path, std::ios::binary), two(other, std::ios::binary);
+  using Bytes = std::istreambuf_iterator<char>;
+  return std::equal(Bytes(one), Bytes(), Bytes(two), Bytes());
+}
 
 /// Whether a file is written where it is, since it cannot be replaced by a rename: a device or a pipe.
 bool is_written_in_place(const std::filesystem::path& target) {
@@ -112,6 +120,7 @@ void OutputFiles::commit(const std::function<void()>& when_in_place) {
     std::move(files_.begin(), files_.end(), std::back_inserter(outer_->files_));
     std::move(folders_.begin(), folders_.end(), std::back_inserter(outer_->folders_));
   } else {
+    require_one_each();
     for (File& file : files_) finish(file);
     const PuttingInPlace now;
     std::size_t done = 0;
@@ -128,6 +137,20 @@ void OutputFiles::commit(const std::function<void()>& when_in_place) {
   }
   files_.clear();  // this removes the replaced files, which have the temporary names now
   folders_.clear();
+}
+
+/// Of several files for one target all but one go: those of an image that several outputs name are the same. \throw
+/// WriteError if they differ
+void OutputFiles::require_one_each() {
+  std::vector<File> one_each;
+  for (File& file : files_) {
+    const auto other =
+        std::find_if(one_each.begin(), one_each.end(), [&](const File& f) { return f.target == file.target; });
+    if (other == one_each.end()) one_each.push_back(std::move(file));
+    else if (!are_same(other->temporary.path(), file.temporary.path()))
+      throw WriteError(file.path + ": expected a file of its own, got one that this run writes something else to, too");
+  }
+  files_ = std::move(one_each);
 }
 
 /// Gives a file the permissions of the one that it replaces and, if asked, waits until it is on the disk. It keeps its

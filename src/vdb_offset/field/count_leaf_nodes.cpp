@@ -131,17 +131,10 @@ class TriangleCells {
   CellSet::Block last_block_{};
 };
 
-}  // namespace
-
-double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf, bool slab) {
-  // Most cells along the diagonal, and within reach: they limit the time that counting takes. Not measured.
-  constexpr double kMostCellsAcross = 192, kMostReachInCells = 4;
+/// The number of cells within reach of the surface.
+double count_cells(const Surface& surface, const Reach& reach, double cell, double voxel, bool slab) {
   const MeshFacts& facts = surface.facts;
-  const double far = std::max(reach.inside, reach.outside), near = std::min(reach.inside, reach.outside);
-  const double across = facts.diagonal + 2 * far;
-  const double voxel = leaf / kLeafWidth;
-  double cell = leaf;
-  while (across / cell > kMostCellsAcross || far / cell > kMostReachInCells) cell *= 2;
+  const double far = std::max(reach.inside, reach.outside);
   // A slab is one cell thick: cells outside of the set count as its outermost ones.
   const Vec3d wide(far, far, slab ? 0 : far);
   const Vec3d upper = slab ? Vec3d(facts.upper[0], facts.upper[1], facts.lower[2]) : facts.upper;
@@ -153,13 +146,33 @@ double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf,
       around.add(surface.vertices[i], surface.vertices[j], surface.vertices[k]);
     }
   });
-  const double counted = static_cast<double>(cells.count()), ratio = cell / leaf;
+  return static_cast<double>(cells.count());
+}
+
+}  // namespace
+
+double count_leaf_nodes(const Surface& surface, const Reach& reach, double leaf, bool slab) {
+  // Most cells along the diagonal, and within reach: they limit the time that counting takes. Not measured.
+  constexpr double kMostCellsAcross = 192, kMostReachInCells = 4;
+  const MeshFacts& facts = surface.facts;
+  const double far = std::max(reach.inside, reach.outside), near = std::min(reach.inside, reach.outside);
+  const double across = facts.diagonal + 2 * far, voxel = leaf / kLeafWidth;
+  double cell = leaf;
+  while (across / cell > kMostCellsAcross || far / cell > kMostReachInCells) cell *= 2;
+  const double counted = count_cells(surface, reach, cell, voxel, slab), ratio = cell / leaf;
   if (ratio == 1) return counted;
+  const double in_cell = ratio * ratio * (slab ? 1 : ratio);
+  if (far >= cell) {
+    // Cells all of whose leaf nodes are within reach are full, others on average half.
+    const double width = cell - leaf;
+    const Reach sure{std::max(0.0, reach.inside - width), std::max(0.0, reach.outside - width)};
+    return (counted + count_cells(surface, sure, cell, voxel, slab)) / 2 * in_cell;
+  }
   // A flat piece of a sheet of thickness T meets area * (T + w) / leaf^3 cubes, w = 1.5 leaf the mean width of a
   // cube; curved outwards it has more area farther out.
   const double spread = 1 + 2 * reach.outside / facts.diagonal;
   const double sheet = facts.area * spread * spread * (far + near + 1.5 * leaf) / (leaf * leaf * leaf);
-  return std::min(counted * ratio * ratio * (slab ? 1 : ratio), std::max(sheet, counted * ratio));
+  return std::min(counted * in_cell, std::max(sheet, counted * ratio));
 }
 
 }  // namespace vdb_offset

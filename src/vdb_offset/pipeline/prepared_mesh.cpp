@@ -51,6 +51,8 @@ RunBytes bytes_of_run(const MeshParts& parts, PolygonView mesh, const OffsetOpti
                                          layers_bytes(mesh, surface, yield.layers)};
   for (const auto* more : {&parts.whole, &parts.rest, &parts.obstacles})
     if (*more) bytes.always += surface_bytes(**more);
+  // What is found near obstacles, and the whole of mesh and obstacles as it is judged.
+  if (parts.obstacles) bytes.after_grid += 2 * surface_bytes(*parts.obstacles);
   if (options.exact) bytes.always += exact_bytes(mesh.positions.size());
   if (options.keep_field) bytes.always += kVdbModuleBytes;
   if (options.keep_paths) bytes.after_grid += paths_bytes(mesh.positions.size(), yield.results);

@@ -85,10 +85,10 @@ std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
   return std::pair{file.st_dev, file.st_ino};
 }
 
-/// The files that a model's run writes; none if its name cannot be used, which is told when it comes to it.
-std::vector<std::string> written_by(const BatchRequest& request, const Model& model) {
+/// How a model is offset; nothing if its name cannot be used, which is told when it comes to it.
+ModelRun run_if_usable(const BatchRequest& request, const Model& model) {
   try {
-    return run_of(request, model).written;
+    return run_of(request, model);
   } catch (const UnusableName&) {
     return {};
   }
@@ -143,24 +143,33 @@ ModelRun run_of(const BatchRequest& request, const Model& model) {
 void require_apart(const BatchRequest& request, std::span<const Model> models) {
   const std::string table = path_of_table(request.out), state = state_folder(request.out) + "/";
   std::map<std::string, const Model*> taken;
-  std::set<std::pair<dev_t, ino_t>> files_of_models;
+  std::set<std::pair<dev_t, ino_t>> read;    // by any model
   std::set<std::pair<dev_t, ino_t>> config;  // none, or one
   if (const auto identity = identity_of(request.config)) config.insert(*identity);
   if (const auto identity = identity_of(table); identity && config.contains(*identity))
     throw UsageError(
         fmt::format("--config: expected another file than the table of the batch, got {}", request.config));
-  for (const Model& model : models) {
-    const std::string path = request.folder + "/" + model.path;
+  std::vector<std::vector<std::string>> written;
+  const auto add_read = [&](const std::string& path) {
     taken.emplace(fs::path(path).lexically_normal(), nullptr);
-    if (const auto identity = identity_of(path)) files_of_models.insert(*identity);
+    if (const auto identity = identity_of(path)) read.insert(*identity);
+  };
+  for (const Model& model : models) {
+    add_read(request.folder + "/" + model.path);
+    ModelRun run = run_if_usable(request, model);
+    for (const std::string& path : run.read) add_read(path);
+    written.push_back(std::move(run.written));
   }
+  if (const auto identity = identity_of(table); identity && read.contains(*identity))
+    throw UsageError(fmt::format("{}: expected a table, got a file that is read", table));
   for (const Model& model : models)
-    for (const std::string& path : written_by(request, model)) {
+    for (const std::string& path : written[static_cast<std::size_t>(&model - models.data())]) {
       const auto [other, is_new] = taken.emplace(fs::path(path).lexically_normal(), &model);
       const auto identity = identity_of(path);
       // By whatever link it is reached.
-      if ((!is_new && !other->second) || (identity && files_of_models.contains(*identity)))
-        throw UsageError(fmt::format("{}: expected outputs that are no models, got {}", model.path, path));
+      if ((!is_new && !other->second) || (identity && read.contains(*identity)))
+        throw UsageError(
+            fmt::format("{}: expected outputs that are no models, nor read with them, got {}", model.path, path));
       if (identity && config.contains(*identity))
         throw UsageError(fmt::format("{}: expected outputs beside the file of --config, got {}", model.path, path));
       if (path == table || path.starts_with(state))

@@ -60,7 +60,12 @@ std::string place_of(const std::string& path, const toml::source_region& source)
 
 /// A string or a number as on the command line. \throw UsageError for anything else
 std::string text_of(const toml::node& node, const std::string& place) {
-  if (const auto* const text = node.as_string()) return text->get();
+  if (const auto* const text = node.as_string()) {
+    // Where it comes to names of files, all would end there.
+    require(text->get().find('\0') == std::string::npos,
+            fmt::format("{}: expected text without characters of code 0", place));
+    return text->get();
+  }
   if (const auto* const number = node.as_integer()) return fmt::format("{}", number->get());
   if (const auto* const number = node.as_floating_point()) return fmt::format("{}", number->get());
   throw UsageError(fmt::format("{}: expected a string, a number, true, false or an array of them", place));

@@ -10,8 +10,10 @@ namespace {
 constexpr std::string_view kDigits = "0123456789", kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 constexpr std::size_t kMostDigits = 5;  // of a port, or of models at once on one machine
 
+/// Above 0.
 bool is_number(std::string_view text) {
-  return !text.empty() && text.size() <= kMostDigits && text.find_first_not_of(kDigits) == std::string_view::npos;
+  return !text.empty() && text.size() <= kMostDigits && text.find_first_not_of(kDigits) == std::string_view::npos &&
+         text.find_first_not_of('0') != std::string_view::npos;
 }
 
 /// Letters, digits, and behind the first of them '.', '-' and '_'.
