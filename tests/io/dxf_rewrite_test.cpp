@@ -97,6 +97,12 @@ TEST_CASE("dxf: entities with straight segments keep all but their coordinates",
   CHECK((risen[0].type == "POLYLINE" && risen[0].number(70) == 8 && risen[2].number(30) == 2));
 }
 
+TEST_CASE("dxf written: a list that an entity leaves open takes in nothing of its new form", "[dxf]") {
+  for (const char* const header : {"9|$ACADVER 1|AC1015", "9|$ACADVER 1|AC1009"})
+    CHECK_THAT(moved_entities("0|CIRCLE 5|2F 10|0 20|0 40|1 102|{X 1|a", header),
+               Catch::Contains("102\n{X\n1\na\n102\n}\n"));
+}
+
 TEST_CASE("dxf: curved entities become polylines and keep what they have beside their form", "[curves][io][dxf]") {
   const std::string made = moved(
       dxf_text::file("0|CIRCLE 5|2F 102|{ACAD_REACTORS 330|1C 102|} 330|1F 100|AcDbEntity 8|holes 6|DASHED 62|3 370|25 "

@@ -115,6 +115,8 @@ void DxfCopies::add_own(Common& common, const DxfEntity& entity) const {
     else if (group.code == 39) thickness = text_.number(group);
     if (group.code == 102) in_braces = opens;
   });
+  // A list that the file leaves open would take in what follows here.
+  if (in_braces) DxfWriter(common.before, line_end_).group(102, "}");
   if (thickness == 0) return;
   const bool points_down =
       entity.kind != DxfKind::Ellipse && entity.kind != DxfKind::Spline && is_mirrored(text_, entity);
