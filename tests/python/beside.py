@@ -104,6 +104,10 @@ class BesideTheCommand(unittest.TestCase):
         """Statistics are a report of the command, but for what is named."""
         found, expected = json.loads(json.dumps(statistics)), dict(report)
         self.assertEqual(set(found), set(expected))
+        # The command holds its files besides, Python the interpreter.
+        for figures in (found, expected):
+            if "grid" in figures:
+                figures["grid"] = {key: value for key, value in figures["grid"].items() if key != "estimated_bytes"}
         for key in set(found) - self.of_the_run - set(but):
             self.assertEqual(found[key], expected[key], key)
 
