@@ -6,12 +6,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "fuzz/promise.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/curve/dxf/dxf.h"
@@ -22,13 +21,6 @@
 using namespace vdb_offset;
 
 namespace {
-
-/// Not an assert: it must hold in every build.
-void require(bool holds, const char* rule) {
-  if (holds) return;
-  std::fprintf(stderr, "violated: %s\n", rule);
-  std::abort();
-}
 
 std::optional<io::CurveFile> parsed(io::CurveFormat format, const std::string& bytes, const io::CurveReading& how) {
   try {

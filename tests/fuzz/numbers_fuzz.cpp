@@ -7,11 +7,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "fuzz/promise.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 
@@ -20,13 +19,6 @@ using namespace vdb_offset;
 namespace {
 
 constexpr std::size_t kCount = 3;  // as the seeds have
-
-/// Not an assert: it must hold in every build.
-void require(bool holds, const char* rule) {
-  if (holds) return;
-  std::fprintf(stderr, "violated: %s\n", rule);
-  std::abort();
-}
 
 }  // namespace
 

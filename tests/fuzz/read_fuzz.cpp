@@ -7,13 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "fuzz/promise.h"
 #include "support/splitter.h"
 #include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
@@ -27,13 +26,6 @@ using namespace vdb_offset;
 namespace {
 
 constexpr io::Format kFormat = io::Format::FUZZ_FORMAT;
-
-/// Not an assert: it must hold in every build.
-void require(bool holds, const char* rule) {
-  if (holds) return;
-  std::fprintf(stderr, "violated: %s\n", rule);
-  std::abort();
-}
 
 const std::string& file_name() {
   static const std::string name = std::string("fuzz.") + io::name(kFormat);

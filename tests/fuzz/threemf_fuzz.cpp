@@ -8,12 +8,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "fuzz/promise.h"
 #include "support/threemf_packages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
@@ -23,13 +22,6 @@
 using namespace vdb_offset;
 
 namespace {
-
-/// Not an assert: it must hold in every build.
-void require(bool holds, const char* rule) {
-  if (holds) return;
-  std::fprintf(stderr, "violated: %s\n", rule);
-  std::abort();
-}
 
 std::optional<io::MeshFile> parsed(const std::string& bytes) {
   try {

@@ -3,26 +3,14 @@
 // have a name, a line and values. What else is thrown ends the process, as do the sanitizers.
 
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "fuzz/promise.h"
 #include "request/config_file.h"
 #include "request/request.h"
 
-using namespace vdb_offset::tool;
-
-namespace {
-
-/// Not an assert: it must hold in every build.
-void require(bool holds, const char* rule) {
-  if (holds) return;
-  std::fprintf(stderr, "violated: %s\n", rule);
-  std::abort();
-}
-
-}  // namespace
+using vdb_offset::tool::ConfigEntry, vdb_offset::tool::parse_config, vdb_offset::tool::UsageError;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<ConfigEntry> entries;
@@ -33,9 +21,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const ConfigEntry& entry = entries[i];
-    ::require(entry.place.starts_with("fuzz.toml:"), "an option has a line");
-    ::require(!entry.is_switch || entry.values.empty(), "a switch has no value");
-    ::require(i == 0 || entries[i - 1].name < entry.name, "an option is there once");
+    require(entry.place.starts_with("fuzz.toml:"), "an option has a line");
+    require(!entry.is_switch || entry.values.empty(), "a switch has no value");
+    require(i == 0 || entries[i - 1].name < entry.name, "an option is there once");
   }
   return 0;
 }

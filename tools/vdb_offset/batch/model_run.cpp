@@ -85,7 +85,7 @@ std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
   return std::pair{file.st_dev, file.st_ino};
 }
 
-/// How a model is offset; nothing if its name cannot be used, which is told when it comes to it.
+/// How a model is offset. Empty if its name cannot be used: its run reports that later.
 ModelRun run_if_usable(const BatchRequest& request, const Model& model) {
   try {
     return run_of(request, model);
