@@ -92,6 +92,9 @@ TEST_CASE("refined OBJ: line ends, continued lines and numbers behind coordinate
   for (const std::string end : {"", "\\\n", "\\\r\n"})
     CHECK_THAT(split_text(Format::Obj, "f 1 2 3\nv 0 0 0\nv 2 0 0\nv 2 2 0 " + end, {{0, 1}}),
                Catch::EndsWith("\nv 1 0 0\n"));
+  // Nor does one at the end of a word that is no number.
+  CHECK_THAT(split_text(Format::Obj, "v 0 0 0 x\\ \nv 2 0 0 x\\ \nv 2 2 0 x\\ \nf 1 2 3\n", {{0, 1}}),
+             Catch::Contains("v 1 0 0 x\\ \nf 4 2 3\n"));
   const std::string bytes =
       replaced_everywhere(replaced_everywhere(replaced_everywhere(coloured, " 1 0 0", " 255 0 0"), "0.5 1 0", "0 9 0"),
                           "2 0 0 255", "2 0 0");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,6 +26,7 @@ struct SurfacePlace {
   std::array<double, 3> share;          ///< As in VertexOrigin.
 
   bool on_edge() const { return vertex[2] == kNone; }
+  auto operator<=>(const SurfacePlace&) const = default;
 };
 
 /// The triangles of a surface, split at the middles of edges, so that they still meet edge to edge. Its vertices come

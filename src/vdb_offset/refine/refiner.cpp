@@ -85,6 +85,7 @@ bool Refiner::begin_round(const std::function<void(double)>& tell) {
   if (is_cut_short_ || round_++ == kMostSplitRounds) return false;
   tell(1 - static_cast<double>(fresh_.size()) / static_cast<double>(state_.size()));
   look_at_fresh();
+  answered_.clear();
   then_ = {vertices_.size(), state_, triangles_, fresh_};
   piece_of_.resize(state_.size());
   std::iota(piece_of_.begin(), piece_of_.end(), 0U);
@@ -99,7 +100,7 @@ void Refiner::look_at_fresh() {
       fresh_.size(), [&](std::size_t i) { state_[fresh_[i]] = judge(triangles_.triangles()[fresh_[i]]); }, 16);
   std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] != State::Off && state_[t] != State::Mixed; });
   std::size_t i = 0;
-  std::erase_if(candidates_, [&](const Candidate&) { return i < marked_.size() && marked_[i++] != 0; });
+  take_out([&](const Candidate&) { return i < marked_.size() && marked_[i++] != 0; });
   marked_.clear();  // edges that have been split are gone
   propose(fresh_);
 }
@@ -150,7 +151,7 @@ bool Refiner::keep_whole(std::span<const std::uint32_t> triangles) {
   fresh_ = then_.fresh;
   std::erase_if(fresh_, [&](std::uint32_t t) { return state_[t] == State::Whole; });
   piece_of_.resize(state_.size());
-  std::erase_if(candidates_, [&](const Candidate& one) { return one.edge.second >= then_.vertices; });
+  take_out([&](const Candidate& one) { return one.edge.second >= then_.vertices; });
   marked_.clear();
   propose(fresh_);
   return true;
@@ -221,26 +222,50 @@ void Refiner::propose(const std::vector<std::uint32_t>& triangles) {
   std::inplace_merge(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(known), candidates_.end());
 }
 
+/// Takes candidates out, but remembers what they asked and were answered.
+template <class Condition>
+void Refiner::take_out(Condition&& condition) {
+  std::erase_if(candidates_, [&](const Candidate& one) {
+    if (!condition(one)) return false;
+    answered_.emplace_back(one.question, one.vertex.target);
+    return true;
+  });
+  std::stable_sort(answered_.begin(), answered_.end(),
+                   [](const auto& a, const auto& b) { return a.first.place < b.first.place; });
+  answered_.erase(
+      std::unique(answered_.begin(), answered_.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+      answered_.end());
+}
+
+VertexTarget Refiner::target_of(const Question& question) const {
+  const auto& [place, position, asked, between, is_by_miter] = question;
+  const auto first = std::lower_bound(answered_.begin(), answered_.end(), place,
+                                      [](const auto& one, const SurfacePlace& at) { return one.first.place < at; });
+  for (auto one = first; one != answered_.end() && one->first.place == place; ++one)
+    if (one->first == question) return one->second;
+  if (asked == 0) return {};
+  if (between)
+    if (const VertexTarget target = targets_.beside(place, position, asked, *between, is_by_miter); target.is_there)
+      return target;
+  return targets_.along(place, position, asked);
+}
+
 Refiner::Candidate Refiner::candidate(const Edge& edge, std::uint32_t source) const {
   const RefinedVertex &a = vertices_[edge.first], &b = vertices_[edge.second];
-  Candidate one{edge, triangles_.middle(edge, source), {}, {}};
   const Vec3d middle = (triangles_.positions()[edge.first] + triangles_.positions()[edge.second]) / 2.0;
-  one.position = options_.precision(middle);
-  one.vertex.asked = (a.asked + b.asked) / 2;
-  one.vertex.tolerance = (a.tolerance + b.tolerance) / 2;
-  if (one.vertex.asked == 0) return one;
-  if (!a.target.is_there || !b.target.is_there) {
-    one.vertex.target = targets_.along(one.place, one.position, one.vertex.asked);
-    return one;
+  Candidate one{
+      edge, {triangles_.middle(edge, source), options_.precision(middle), (a.asked + b.asked) / 2, {}, false}, {}};
+  if (a.target.is_there && b.target.is_there) {
+    one.question.between = middle + (a.target.displacement + b.target.displacement) / 2.0;
+    one.question.is_by_miter = a.target.is_mitred || b.target.is_mitred;
   }
-  const Vec3d chord_middle = middle + (a.target.displacement + b.target.displacement) / 2.0;
-  one.vertex.target = targets_.beside(one.place, one.position, one.vertex.asked, chord_middle,
-                                      a.target.is_mitred || b.target.is_mitred);
-  if (!one.vertex.target.is_there) one.vertex.target = targets_.along(one.place, one.position, one.vertex.asked);
-  if (!one.vertex.target.is_there) return one;
-  one.vertex.bulge =
-      std::abs(one.vertex.target.away.dot(one.position + one.vertex.target.displacement - chord_middle)) /
-      one.vertex.tolerance;
+  one.vertex.asked = one.question.asked;
+  one.vertex.tolerance = (a.tolerance + b.tolerance) / 2;
+  one.vertex.target = target_of(one.question);
+  if (!one.vertex.target.is_there || !one.question.between) return one;
+  one.vertex.bulge = std::abs(one.vertex.target.away.dot(one.question.position + one.vertex.target.displacement -
+                                                         *one.question.between)) /
+                     one.vertex.tolerance;
   const RefinedVertex& newer = b;  // numbers grow
   if (!(one.vertex.bulge < kMostKept * newer.bulge) && newer.bulge > 0) one.vertex.kept = newer.kept + 1;
   return one;
@@ -376,8 +401,8 @@ void Refiner::split(const std::vector<std::uint8_t>& marked) {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     if (!marked[i]) continue;
     edges.push_back(candidates_[i].edge);
-    places.push_back(candidates_[i].place);
-    positions.push_back(candidates_[i].position);
+    places.push_back(candidates_[i].question.place);
+    positions.push_back(candidates_[i].question.position);
     vertices_.push_back(candidates_[i].vertex);
   }
   std::vector<std::uint32_t> split_from;

@@ -148,6 +148,8 @@ class ObjRefiner {
       if (kind == kVLines) append_vertex(text, i);
       else if (kind == kVtLines) append_texture(text, texture_.added[i]);
       else append_normal(text, normals_.added[i]);
+      // So would that of a word which is no number; a blank behind it keeps the lines apart, as it did in the source.
+      if (text.ends_with('\\')) text += ' ';
       text += line_end_;
     }
   }
