@@ -6,19 +6,21 @@ function(vdb_offset_objects component result)
   set(${result} $<FILTER:$<TARGET_OBJECTS:vdb_offset_${component}_objects>,INCLUDE,[.]o$> PARENT_SCOPE)
 endfunction()
 
-# Those of a whole component, with what it has apart.
+# Those of a whole component, with the writers that volume has apart.
 function(vdb_offset_component_objects component result)
   vdb_offset_objects(${component} objects)
-  foreach(part IN LISTS ${component}_parts)
-    vdb_offset_objects(${part} more)
-    list(APPEND objects ${more})
-  endforeach()
+  if(component STREQUAL volume)
+    foreach(part IN LISTS volume_parts)
+      vdb_offset_objects(${part} more)
+      list(APPEND objects ${more})
+    endforeach()
+  endif()
   set(${result} ${objects} PARENT_SCOPE)
 endfunction()
 
 # vdb_offset_inside: all objects and their headers, for the tests and benchmarks.
 add_library(vdb_offset_inside INTERFACE)
-foreach(component IN LISTS components core_parts volume_parts)
+foreach(component IN LISTS components volume_parts)
   target_link_libraries(vdb_offset_inside INTERFACE vdb_offset_${component}_objects)
   vdb_offset_objects(${component} objects)
   target_sources(vdb_offset_inside INTERFACE ${objects})
@@ -36,35 +38,17 @@ if(NOT BUILD_SHARED_LIBS AND NOT VDB_OFFSET_SANITIZE AND NOT VDB_OFFSET_SANITIZE
   set(is_sealed ON)
 endif()
 
-# Makes one object, of this name, of several; they stay as they are where nothing is sealed.
-function(vdb_offset_seal name objects result)
+function(vdb_offset_archive component)
+  vdb_offset_component_objects(${component} objects)
   if(is_sealed)
-    set(sealed ${CMAKE_CURRENT_BINARY_DIR}/sealed/vdb_offset_${name}.o)
+    set(sealed ${CMAKE_CURRENT_BINARY_DIR}/sealed/vdb_offset_${component}.o)
     file(GENERATE OUTPUT ${sealed}.objects CONTENT "$<JOIN:${objects},\n>")
     add_custom_command(OUTPUT ${sealed}
       COMMAND ${CMAKE_COMMAND} -DLINKER=${VDB_OFFSET_LINKER} -DNM=${CMAKE_NM} -DOBJCOPY=${VDB_OFFSET_OBJCOPY} -DOUTPUT=${sealed}
               -P ${CMAKE_CURRENT_SOURCE_DIR}/src/cmake/seal.cmake
-      DEPENDS ${objects} src/cmake/seal.cmake VERBATIM COMMENT "Sealing ${name}")
+      DEPENDS ${objects} src/cmake/seal.cmake VERBATIM COMMENT "Sealing ${component}")
     set(objects ${sealed})
     set_source_files_properties(${sealed} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
-  endif()
-  set(${result} ${objects} PARENT_SCOPE)
-endfunction()
-
-# Parts of core are objects of their own: a program that has what such a part defines, as the command has, takes the rest
-# of the archive alone.
-function(vdb_offset_archive component)
-  if(component STREQUAL core)
-    vdb_offset_objects(core rest)
-    vdb_offset_seal(core "${rest}" objects)
-    foreach(part IN LISTS core_parts)
-      vdb_offset_objects(${part} part_objects)
-      vdb_offset_seal(${part} "${part_objects}" sealed_part)
-      list(APPEND objects ${sealed_part})
-    endforeach()
-  else()
-    vdb_offset_component_objects(${component} whole)
-    vdb_offset_seal(${component} "${whole}" objects)
   endif()
   add_library(vdb_offset_${component} STATIC ${objects})
   set_target_properties(vdb_offset_${component} PROPERTIES LINKER_LANGUAGE CXX)
@@ -113,7 +97,7 @@ add_library(vdb_offset::vdb_offset ALIAS vdb_offset)
 
 # The public headers: what is not named here is not installed.
 set(public_headers
-  api.h check.h curve_offset.h curves.h distance_field.h distances.h error.h exact_surface.h field_grids.h grid.h iso_surface.h layer_cells.h layers.h
+  api.h check.h curve_offset.h curves.h distance_field.h distances.h error.h exact_surface.h grid.h iso_surface.h layer_cells.h layers.h
   mesh_facts.h numbers.h offset.h options.h output_files.h polygons.h refinement.h report.h result.h run.h scene.h
   shell.h statistics.h tolerance.h version.h volume_mesh.h
   io/attributes.h io/cad_file.h io/curve_file.h io/file_bytes.h io/iso_file.h io/mesh_file.h io/page_file.h io/refined_file.h io/shell_file.h io/states_file.h io/volume_file.h)

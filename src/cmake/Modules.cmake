@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Modules that are opened when they are needed, so that not every run loads OpenVDB, VTK, CGNS and Assimp.
+# Modules that are opened when a file of theirs is asked for, so that not every run loads VTK, CGNS and Assimp.
 
 file(RELATIVE_PATH from_command ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/vdb_offset)
 set_source_files_properties(src/vdb_offset/io/base/open_module.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_DEFINITIONS
@@ -47,12 +47,10 @@ else()
   vdb_offset_folder(io/documents/assimp without_assimp)
 endif()
 
-# Writers, and what makes iso-surfaces: the command opens them, and other programs are linked to what they need.
+# Writers: the command opens them, and other programs are linked to what they need.
 if(NOT loaders)
   return()
 endif()
-vdb_offset_folder(grids/modules load_vdb)
-vdb_offset_module(vdb "" grids/modules/vdb_module)
 if(VDB_OFFSET_VTK)
   vdb_offset_folder(io/volume/modules load_vtk)
   vdb_offset_module(vtk "${vtk_needs}" io/volume/modules/vtk_module io/volume/patch_words)
@@ -62,9 +60,8 @@ if(VDB_OFFSET_CGNS)
   vdb_offset_module(cgns "${cgns_needs}" io/volume/modules/cgns_module io/volume/patch_words volume/volume_faces volume/volume_mesh)
 endif()
 
-# What the command is linked to instead of the component volume, and before the component core: what is defined here is not
-# taken from that archive, where it is an object of its own.
-add_library(vdb_offset_by_modules INTERFACE)
+# What the command is linked to instead of the component volume.
+add_library(vdb_offset_volume_by_modules INTERFACE)
 vdb_offset_objects(volume objects)
 vdb_offset_objects(modules loader_objects)
-target_sources(vdb_offset_by_modules INTERFACE ${objects} ${loader_objects})
+target_sources(vdb_offset_volume_by_modules INTERFACE ${objects} ${loader_objects})

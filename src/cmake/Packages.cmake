@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages, one for each component of what is installed; scripts/packages makes them.
 #
-#   command      vdb-offset            the command, its modules and its worker, its manual page, the guides
+#   command      vdb-offset            the command, its manual page, the guides
 #   development  libvdb-offset-dev     archives, headers, the CMake package, the pkg-config file
 #   python       python3-vdb-offset    only where the build has it
 #

@@ -10,7 +10,6 @@
 #include "vdb_offset/field/direction_field.h"
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
-#include "vdb_offset/grids/openvdb/voxel_grids.h"
 #include "vdb_offset/scene.h"
 
 using namespace vdb_offset;
@@ -24,11 +23,9 @@ struct Fixture {
     to_local_frame(surface, h);
   }
   Front front() const { return rasterise(surface, {h, 1.01 * h}); }
-  DistanceField swept(Reach reach, Solver solver = Solver::Closest) const {
+  DistanceField field(Reach reach, Solver solver = Solver::Closest) const {
     return sweep(front(), surface, {solver, reach});
   }
-  FieldGrids band() const { return make_grids(front()); }
-  FieldGrids field(Reach reach, Solver solver = Solver::Closest) const { return make_grids(swept(reach, solver)); }
 };
 
 struct FieldErrors {
@@ -73,8 +70,7 @@ bool same_voxels(const GridPtr& a, const GridPtr& b) {
 
 TEST_CASE("rasterise: the band is complete and exact, with sign", "[rasterise]") {
   const double h = 0.037, half_side = 0.5;
-  const Fixture box(scene::box(Vec3d(1), 5, true), h);
-  const FieldGrids front = box.band();
+  const Front front = Fixture(scene::box(Vec3d(1), 5, true), h).front();
   // phi is stored as float: its rounding is 6e-8 of a band of 0.04.
   const FieldErrors errors = compare(front, [&](const Vec3d& x) { return cube_distance(x, half_side); });
   CHECK(errors.worst < 4e-9);
@@ -83,14 +79,14 @@ TEST_CASE("rasterise: the band is complete and exact, with sign", "[rasterise]")
   for (int i = -20; i <= 40; ++i)
     for (int j = -20; j <= 40; ++j)
       for (int k = -20; k <= 40; ++k)
-        expected += std::abs(cube_distance(front.phi->indexToWorld(openvdb::Coord(i, j, k)), half_side)) <= 1.01 * h;
+        expected += std::abs(cube_distance(front.phi->indexToWorld(openvdb::Coord(i, j, k)), half_side)) <= front.band;
   CHECK(errors.voxels == expected);
 }
 
 TEST_CASE("rasterise: one large triangle and many small ones give the same distances", "[rasterise]") {
   const double h = 0.02;
-  const FieldGrids coarse = Fixture(scene::box(Vec3d(1), 1, true), h).band(),
-                   fine = Fixture(scene::box(Vec3d(1), 50, true), h).band();
+  const Front coarse = Fixture(scene::box(Vec3d(1), 1, true), h).front(),
+              fine = Fixture(scene::box(Vec3d(1), 50, true), h).front();
   REQUIRE(coarse.phi->activeVoxelCount() == fine.phi->activeVoxelCount());
   auto other = fine.phi->getConstAccessor();
   double worst = 0;
@@ -102,7 +98,7 @@ TEST_CASE("rasterise: one large triangle and many small ones give the same dista
 TEST_CASE("rasterise: sheets a tenth of a voxel apart are both there", "[rasterise]") {
   const double h = 0.05;
   const Fixture plates(scene::plates(1, 0.3, 0.005, 4), h);
-  const FieldGrids front = plates.band();
+  const Front front = plates.front();
   for (auto voxel = front.phi->cbeginValueOn(); voxel; ++voxel) {
     const Vec3d x = front.phi->indexToWorld(voxel.getCoord());
     CHECK(std::abs(*voxel) ==
@@ -113,7 +109,7 @@ TEST_CASE("rasterise: sheets a tenth of a voxel apart are both there", "[rasteri
 TEST_CASE("sweep: phi of a closest-triangle field is exact out to its reach", "[sweep]") {
   const double h = 0.02, half_side = 0.5;
   const Fixture cube(scene::box(Vec3d(1), 6, true), h);
-  const FieldGrids field = cube.field({2.01 * h, 0.3});
+  const DistanceField field = cube.field({2.01 * h, 0.3});
   const FieldErrors errors = compare(field, [&](const Vec3d& x) { return cube_distance(x, half_side); });
   CHECK(errors.worst < 1e-7);
   CHECK(errors.wrong_sign == 0);
@@ -133,7 +129,7 @@ TEST_CASE("sweep: curved surfaces stay within a hundredth of a voxel", "[sweep]"
   const Polygons mesh = scene::bumpy_sphere(1, 0.3, 1.5, 11, 4);
   const double h = 0.05;
   const Fixture bumpy(mesh, h);
-  const FieldGrids field = bumpy.field({2 * h, 0.4});
+  const DistanceField field = bumpy.field({2 * h, 0.4});
   double worst = 0, sum = 0;
   std::size_t count = 0, n = 0;
   for (auto voxel = field.phi->cbeginValueOn(); voxel; ++voxel) {
@@ -157,7 +153,7 @@ TEST_CASE("sweep: walls, gaps and needles thinner than a voxel keep their distan
   needle.face_begin = {0, 3, 6, 9, 12};
   const double h = 0.05;  // the walls are a fifth of it thick, the plates a tenth of it apart
   for (const Polygons& mesh : {scene::hollow_box(1, 0.01, 3), scene::plates(1, 0.005, 0.005, 4), needle}) {
-    const FieldGrids field = Fixture(mesh, h).field({2 * h, 0.3});
+    const DistanceField field = Fixture(mesh, h).field({2 * h, 0.3});
     double worst = 0, sum = 0;
     std::size_t count = 0, n = 0;
     for (auto voxel = field.phi->cbeginValueOn(); voxel; ++voxel) {
@@ -178,11 +174,11 @@ TEST_CASE("sweep: walls, gaps and needles thinner than a voxel keep their distan
 TEST_CASE("sweep: the same voxels at any scale and position", "[sweep][invariant]") {
   const Polygons mesh = scene::bumpy_sphere(1, 0.3, 1.5, 8, 3);
   const double h = 0.0625;
-  const FieldGrids base = Fixture(mesh, h).field({2 * h, 0.3});
+  const DistanceField base = Fixture(mesh, h).field({2 * h, 0.3});
   const auto compare_with_base = [&](double scale, const Vec3d& shift, double tolerance) {
     Polygons other = mesh;
     for (Vec3d& p : other.positions) p = p * scale + shift;
-    const FieldGrids field = Fixture(other, h * scale).field({2 * h * scale, 0.3 * scale});
+    const DistanceField field = Fixture(other, h * scale).field({2 * h * scale, 0.3 * scale});
     CHECK(field.phi->activeVoxelCount() == base.phi->activeVoxelCount());
     auto values = field.phi->getConstAccessor();
     double worst = 0;
@@ -198,8 +194,8 @@ TEST_CASE("sweep: the same voxels at any scale and position", "[sweep][invariant
 TEST_CASE("sweep: voxels of the front keep their bits", "[sweep]") {
   const Fixture torus(scene::torus(1, 0.4, 48, 24), 0.05);
   for (const Solver solver : {Solver::Closest, Solver::Eikonal}) {
-    const FieldGrids front = torus.band();
-    const FieldGrids field = torus.field({0.1, 0.3}, solver);
+    const Front front = torus.front();
+    const DistanceField field = torus.field({0.1, 0.3}, solver);
     auto swept = field.phi->getConstAccessor();
     std::size_t changed = 0;
     for (auto voxel = front.phi->cbeginValueOn(); voxel; ++voxel) changed += swept.getValue(voxel.getCoord()) != *voxel;
@@ -214,7 +210,7 @@ TEST_CASE("sweep: an eikonal field converges at first order", "[sweep][long]") {
   std::vector<double> errors;
   for (const double d_over_h : {8.0, 16.0, 32.0}) {
     const double h = 0.1 / d_over_h;
-    const FieldGrids field = Fixture(sphere, h).field({2 * h, 0.1 + 2 * h}, Solver::Eikonal);
+    const DistanceField field = Fixture(sphere, h).field({2 * h, 0.1 + 2 * h}, Solver::Eikonal);
     double sum = 0;
     std::size_t count = 0;
     for (auto voxel = field.phi->cbeginValueOn(); voxel; ++voxel) {
@@ -233,17 +229,14 @@ TEST_CASE("sweep: an eikonal field converges at first order", "[sweep][long]") {
 
 TEST_CASE("sweep: the eikonal gradient has length 1 away from the medial axis", "[sweep]") {
   const double h = 0.0125;
-  const DistanceField field = Fixture(scene::icosphere(0.5, 6), h).swept({2 * h, 0.2}, Solver::Eikonal);
+  DistanceField field = Fixture(scene::icosphere(0.5, 6), h).field({2 * h, 0.2}, Solver::Eikonal);
   const DirectionField directions = make_directions(field, false);
   std::size_t outside = 0, count = 0;
-  for (std::size_t i = 0; i < field.leaves->size(); ++i) {
-    const FieldLeaf& leaf = (*field.leaves)[i];
-    for (auto voxel = leaf.active.beginOn(); voxel; ++voxel) {
-      const double phi = leaf.phi[voxel.pos()];
-      if (phi < 2 * h || phi > 0.2 - 2 * h) continue;
-      ++count;
-      outside += std::abs(Vec3d((*directions.gradient[i])[voxel.pos()]).length() - 1) > 0.02;
-    }
+  for (auto voxel = directions.gradient->cbeginValueOn(); voxel; ++voxel) {
+    const double phi = field.phi->tree().getValue(voxel.getCoord());
+    if (phi < 2 * h || phi > 0.2 - 2 * h) continue;
+    ++count;
+    outside += std::abs(openvdb::Vec3d(*voxel).length() - 1) > 0.02;
   }
   CHECK(count > 10000);
   CHECK(outside == 0);
@@ -254,11 +247,11 @@ TEST_CASE("sweep: grids are the same for any number of threads", "[sweep]") {
   for (const Solver solver : {Solver::Closest, Solver::Eikonal}) {
     const auto with_threads = [&](int threads) {
       tbb::task_arena arena(threads);
-      FieldGrids field;
+      DistanceField field;
       arena.execute([&] { field = bumpy.field({0.1, 0.3}, solver); });
       return field;
     };
-    const FieldGrids one = with_threads(1), four = with_threads(4);
+    const DistanceField one = with_threads(1), four = with_threads(4);
     CHECK(same_voxels(one.phi, four.phi));
     CHECK(same_voxels(one.closest, four.closest));
   }
@@ -267,7 +260,7 @@ TEST_CASE("sweep: grids are the same for any number of threads", "[sweep]") {
 TEST_CASE("sweep: an empty front and a reach inside the band are refused", "[sweep]") {
   const Fixture cube(scene::box(Vec3d(1), 2, true), 0.1);
   Front empty;
-  empty.leaves = std::make_shared<LeafGraph>(std::vector<FieldLeaf>{}, false);
+  static_cast<FieldGrids&>(empty) = make_field_grids(0.1, 0.1, Vec3d(0.0));
   CHECK_THROWS_AS(sweep(empty, cube.surface, {Solver::Closest, {1, 1}}), InvalidInput);
   CHECK_THROWS_AS(cube.field({0.05, 1}), InvalidInput);
   CHECK_THROWS_AS(cube.field({1, 0.05}), InvalidInput);
@@ -276,7 +269,7 @@ TEST_CASE("sweep: an empty front and a reach inside the band are refused", "[swe
 TEST_CASE("field: a saved file opens with its grids, classes and metadata", "[field]") {
   openvdb::initialize();
   const Fixture cube(scene::box(Vec3d(1), 4, true), 0.05);
-  const DistanceField field = cube.swept({0.1, 0.2});
+  const DistanceField field = cube.field({0.1, 0.2});
   const std::string path = (std::filesystem::temp_directory_path() / "vdb_offset_field_test.vdb").string();
   save_vdb(field, path, true, {{"source", "cube"}});
   openvdb::io::File file(path);
@@ -288,9 +281,8 @@ TEST_CASE("field: a saved file opens with its grids, classes and metadata", "[fi
   CHECK(phi->getGridClass() == openvdb::GRID_LEVEL_SET);
   CHECK(phi->metaValue<std::string>("source") == "cube");
   CHECK(phi->voxelSize()[0] == Approx(0.05));
-  const FieldGrids grids = make_grids(field);
-  CHECK(same_voxels(phi, grids.phi));
-  CHECK(same_voxels(closest, grids.closest));
+  CHECK(same_voxels(phi, field.phi));
+  CHECK(same_voxels(closest, field.closest));
   CHECK(phi->tree().getValue(openvdb::Coord::round(phi->worldToIndex(Vec3d(0.0)))) < 0);  // flooded inside
   CHECK_THROWS_AS(save_vdb(field, "/nonexistent/folder/f.vdb", true, {}), WriteError);
 }

@@ -111,7 +111,7 @@ TEST_CASE("plan: leaf nodes are estimated within a factor of two", "[plan]") {
     to_local_frame(surface, plan.voxel_size);
     const DistanceField field =
         sweep(rasterise(surface, {plan.voxel_size, plan.band}), surface, {Solver::Closest, plan.reach});
-    const auto truth = static_cast<double>(field.leaves->size());
+    const auto truth = static_cast<double>(field.phi->tree().leafCount());
     CHECK(static_cast<double>(plan.leaf_nodes) > truth / 2);
     CHECK(static_cast<double>(plan.leaf_nodes) < truth * 2.5);
   }
@@ -129,8 +129,8 @@ TEST_CASE("plan: leaf nodes are estimated as many as there will be, or a third m
         to_local_frame(surface, plan.voxel_size);
         const DistanceField field = sweep(rasterise(surface, {plan.voxel_size, plan.band}), surface, {{}, plan.reach});
         CAPTURE(scene, share, voxels);
-        CHECK(plan.leaf_nodes >= field.leaves->size());
-        CHECK(plan.leaf_nodes <= 4 * field.leaves->size() / 3 + 4);  // a few are soon a third
+        CHECK(plan.leaf_nodes >= field.phi->tree().leafCount());
+        CHECK(plan.leaf_nodes <= 4 * field.phi->tree().leafCount() / 3 + 4);  // a few are soon a third
       }
   }
 }

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
-#include <set>
 #include <tuple>
 
 #include "vdb_offset/field/leaf_graph.h"
@@ -23,16 +22,14 @@ openvdb::Coord origin_of(std::mt19937& random, int across) {
 
 Key key(const openvdb::Coord& origin) { return {origin[0], origin[1], origin[2]}; }
 
-/// A graph of leaf nodes with these origins, one voxel of each active.
-LeafGraph graph_of(const std::set<Key>& origins) {
-  std::vector<FieldLeaf> leaves;
-  for (const auto& [x, y, z] : origins) {
-    FieldLeaf& leaf = leaves.emplace_back();
-    leaf.origin = {x, y, z};
-    leaf.fill(100);
-    leaf.set_on(0, 1, 0);
+/// Grids with these leaf nodes, one voxel of each active.
+FieldGrids grids_with(const std::vector<openvdb::Coord>& origins) {
+  FieldGrids grids = make_field_grids(1, 100, Vec3d(0.0));
+  for (const openvdb::Coord& origin : origins) {
+    grids.phi->tree().setValue(origin, 1);
+    grids.closest->tree().setValue(origin, 0);
   }
-  return {std::move(leaves), false};
+  return grids;
 }
 
 /// Both know each other, or neither does; and neighbours lie across the face that says so.
@@ -49,7 +46,7 @@ void check_links(const LeafGraph& graph) {
       const std::int32_t neighbour = graph[i].neighbour[static_cast<std::size_t>(face)];
       CHECK(neighbour == expected);
       if (neighbour < 0) continue;
-      const FieldLeaf& other = graph[static_cast<std::size_t>(neighbour)];
+      const GraphLeaf& other = graph[static_cast<std::size_t>(neighbour)];
       CHECK(other.neighbour[static_cast<std::size_t>(opposite(face))] == static_cast<std::int32_t>(i));
       CHECK(other.colour() != graph[i].colour());
     }
@@ -73,11 +70,12 @@ TEST_CASE("leaf index: as a map, whatever comes and however often", "[leaf_graph
 
 TEST_CASE("leaf graph: leaf nodes know those across their faces, and those that are made", "[leaf_graph]") {
   std::mt19937 random(5);
-  std::set<Key> origins;
-  for (int i = 0; i < 100; ++i) origins.insert(key(origin_of(random, 6)));
-  LeafGraph graph = graph_of(origins);
+  std::vector<openvdb::Coord> origins;
+  for (int i = 0; i < 100; ++i) origins.push_back(origin_of(random, 6));
+  FieldGrids grids = grids_with(origins);
+  LeafGraph graph(grids);
   const std::size_t before = graph.size();
-  CHECK(before == origins.size());
+  CHECK(before == grids.phi->tree().leafCount());
   check_links(graph);
   // Across every face of every leaf node; asked twice, a neighbour is one.
   for (std::size_t i = 0; i < before; ++i)
@@ -93,29 +91,21 @@ TEST_CASE("leaf graph: leaf nodes know those across their faces, and those that 
     for (const std::int32_t neighbour : graph[i].neighbour) CHECK(neighbour >= 0);
 }
 
-TEST_CASE("leaf graph: leaf nodes without active voxels are dropped, and the others know each other", "[leaf_graph]") {
-  std::mt19937 random(7);
-  std::set<Key> origins;
-  for (int i = 0; i < 60; ++i) origins.insert(key(origin_of(random, 5)));
-  LeafGraph graph = graph_of(origins);
-  const std::size_t before = graph.size();
-  for (std::size_t i = 0; i < before; ++i)
-    for (int face = 0; face < kFaces; ++face) graph.touch_neighbour(static_cast<std::int32_t>(i), face);
+TEST_CASE("leaf graph: of the new leaf nodes the grids get those with active voxels", "[leaf_graph]") {
+  FieldGrids grids = grids_with({openvdb::Coord(0, 0, 0)});
+  LeafGraph graph(grids);
+  const std::int32_t above = graph.touch_neighbour(0, 5), below = graph.touch_neighbour(0, 4);
   graph.make_new_leaves();
-  CHECK(graph.active_voxels() == before);
-  for (std::size_t i = before; i < graph.size(); i += 3) {
-    graph[i].fill(100);
-    graph[i].set_on(3, 0.5F, 0);
-    origins.insert(key(graph[i].origin));
-  }
-  graph.drop_empty_leaves();
-  CHECK(graph.size() == origins.size());
-  CHECK(graph.active_voxels() == origins.size());
-  check_links(graph);
-  for (std::size_t i = 0; i < graph.size(); ++i) {
-    CHECK(origins.contains(key(graph[i].origin)));
-    CHECK(graph.find(graph[i].origin) == static_cast<std::int32_t>(i));
-  }
+  const GraphLeaf& taken = graph[static_cast<std::size_t>(above)];
+  taken.phi->allocate();
+  taken.closest->allocate();
+  taken.phi->setValueOn(3, 0.5F);
+  taken.closest->setValueOn(3, 0);
+  CHECK(graph[static_cast<std::size_t>(below)].phi->isEmpty());
+  graph.attach_new_leaves();
+  CHECK(grids.phi->tree().leafCount() == 2);
+  CHECK(grids.closest->tree().leafCount() == 2);
+  CHECK(grids.phi->tree().isValueOn(openvdb::Coord(0, 0, kLeafWidth + 3)));
 }
 
 TEST_CASE("leaf graph: halo voxels are those that touch the leaf node, one each", "[leaf_graph]") {

@@ -434,7 +434,7 @@ TEST_CASE("iso grid: phi is exact where an edge may cross, and has the right sig
     for (int j = -8; j <= 26; ++j)
       for (int k = -8; k <= 22; ++k) {
         const Vec3d x = lattice.position(Vec3d(i, j, k)) + surface.origin;
-        const double exact = box_distance({0.5, 0.35, 0.25}, x) - level, found = grid.phi->value({i, j, k});
+        const double exact = box_distance({0.5, 0.35, 0.25}, x) - level, found = grid.phi->tree().getValue({i, j, k});
         if (std::abs(exact) > 1e-6) wrong_signs += (found < 0) != (exact < 0);
         if (std::abs(exact) > kVoxel) continue;
         worst = std::max(worst, std::abs(found - exact));

@@ -121,22 +121,18 @@ double check_query(const ClosestQuery& query, std::span<const std::pair<Vec3d, s
 
 /// The root mean square and the largest error of |phi| at `count` voxels, in voxels.
 std::pair<double, double> check_field(const DistanceField& field, const ClosestQuery& query, std::size_t count) {
-  const std::size_t stride = std::max<std::size_t>(1, field.leaves->active_voxels() / count);
+  const std::size_t stride = std::max<std::size_t>(1, field.phi->activeVoxelCount() / count);
   double sum = 0, worst = 0;
   std::size_t n = 0, taken = 0;
-  for (std::size_t i = 0; i < field.leaves->size(); ++i) {
-    const FieldLeaf& leaf = (*field.leaves)[i];
-    for (auto voxel = leaf.active.beginOn(); voxel; ++voxel) {
-      if (n++ % stride != 0) continue;
-      const unsigned at = voxel.pos();
-      const openvdb::Coord in_leaf(static_cast<int>(at >> 6), static_cast<int>(at >> 3 & 7), static_cast<int>(at & 7));
-      const Vec3d x = (leaf.origin + in_leaf).asVec3d() * field.voxel_size;
-      const auto hint = static_cast<std::uint32_t>(leaf.closest[at]);
-      const double error = (std::abs(leaf.phi[at]) - query(x, hint).distance) / field.voxel_size;
-      sum += error * error;
-      worst = std::max(worst, std::abs(error));
-      ++taken;
-    }
+  auto closest = field.closest->getConstAccessor();
+  for (auto voxel = field.phi->cbeginValueOn(); voxel; ++voxel) {
+    if (n++ % stride != 0) continue;
+    const Vec3d x = voxel.getCoord().asVec3d() * field.voxel_size;
+    const auto hint = static_cast<std::uint32_t>(closest.getValue(voxel.getCoord()));
+    const double error = (std::abs(*voxel) - query(x, hint).distance) / field.voxel_size;
+    sum += error * error;
+    worst = std::max(worst, std::abs(error));
+    ++taken;
   }
   return {std::sqrt(sum / static_cast<double>(taken)), worst};
 }
@@ -153,7 +149,7 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
     const std::size_t memory = current_memory();
     Front front;
     raster.push_back(seconds_of([&] { front = rasterise(surface, {h, 1.01 * h}); }));
-    const std::size_t band_voxels = front.leaves->active_voxels();
+    const std::size_t band_voxels = front.phi->activeVoxelCount();
     DistanceField field;
     const Reach reach = distance < 0 ? Reach{far, 2 * h} : Reach{2 * h, far};
     swept.push_back(seconds_of([&] {
@@ -175,12 +171,12 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
     const auto microseconds_each = [&](const std::vector<double>& seconds) {
       return 1e6 * median(seconds) / static_cast<double>(std::max<std::size_t>(1, options.queries));
     };
-    const std::size_t voxels = field.leaves->active_voxels();
+    const std::size_t voxels = field.phi->activeVoxelCount();
     row = {{"threads", threads},
            {"triangles", surface.triangles.size()},
            {"voxel_size", h},
            {"distance", distance},
-           {"leaf_nodes", field.leaves->size()},
+           {"leaf_nodes", field.phi->tree().leafCount()},
            {"band_voxels", band_voxels},
            {"voxels", voxels},
            {"field_bytes", field_memory},  // from the first run alone: later runs reuse the memory of the process

@@ -19,7 +19,6 @@
 #include "vdb_offset/field/direction_field.h"
 #include "vdb_offset/field/rasterise.h"
 #include "vdb_offset/field/sweep.h"
-#include "vdb_offset/field_grids.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/scene.h"
 
@@ -61,8 +60,8 @@ void measure_errors(const std::vector<Vec3d>& from, const std::vector<Vec3d>& to
 /// the distance (the last step cut in proportion) or falls.
 class InterpolatedMarch {
  public:
-  InterpolatedMarch(const FieldGrids& grids, const DirectionField& directions)
-      : sampler_(directions), phi_(*grids.phi), h_(grids.voxel_size) {}
+  InterpolatedMarch(const DistanceField& field, const DirectionField& directions)
+      : sampler_(directions), phi_(*field.phi), h_(field.voxel_size) {}
 
   Vec3d operator()(Vec3d x) {
     double here = depth(x);
@@ -100,11 +99,8 @@ class InterpolatedMarch {
 
 /// Removes the nodes outside of the shape, as on a grid that ends at its bounding box.
 void cut_at_surface(DistanceField& field) {
-  for (std::size_t i = 0; i < field.leaves->size(); ++i) {
-    FieldLeaf& leaf = (*field.leaves)[i];
-    for (auto voxel = leaf.active.beginOn(); voxel; ++voxel)
-      if (leaf.phi[voxel.pos()] > 1e-6f) leaf.active.setOff(voxel.pos());
-  }
+  for (auto phi = field.phi->beginValueOn(); phi; ++phi)
+    if (*phi > 1e-6f) phi.setValueOff();
 }
 
 /// The paper's method for points on a surface, or half way up a ribbon; `tight` with a grid that ends there.
@@ -118,14 +114,13 @@ Row paper_method(Surface surface, std::vector<Vec3d> points, double h, bool slab
   DistanceField field;
   row.sweep = seconds_of([&] { field = sweep(std::move(front), surface, {Solver::Eikonal, reach}); });
   if (tight) cut_at_surface(field);
-  const FieldGrids grids = make_grids(field);
-  row.nodes = field.leaves->active_voxels() / (slab ? kLeafWidth : 1);
-  row.capture = capture_seconds(*grids.phi);
+  row.nodes = field.phi->activeVoxelCount() / (slab ? kLeafWidth : 1);
+  row.capture = capture_seconds(*field.phi);
   std::vector<Vec3d> ends(points.size());
   DirectionField directions;
   row.gradient = seconds_of([&] { directions = make_directions(field, false); });
   row.propagate = seconds_of([&] {
-    InterpolatedMarch march(grids, directions);
+    InterpolatedMarch march(field, directions);
     for (std::size_t p = 0; p < points.size(); ++p) ends[p] = march(points[p] - surface.origin) + surface.origin;
   });
   for (auto* some : {&points, &ends})
@@ -144,7 +139,7 @@ Row our_row(const OffsetResult& result, std::span<const Vec3d> points, const Ans
   row.gradient = seconds(Stage::Gradient);
   row.propagate = seconds(Stage::Propagate);
   row.nodes = result.statistics.active_voxels / per_node;
-  row.capture = capture_seconds(*make_grids(*result.field).phi);
+  row.capture = capture_seconds(*result.field->phi);
   measure_errors({points.begin(), points.end()}, result.positions, answer, row);
   return row;
 }

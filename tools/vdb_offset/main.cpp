@@ -21,7 +21,6 @@
 #include "run_files.h"
 #include "source.h"
 #include "terminal.h"
-#include "vdb_offset/distance_field.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
 
@@ -35,10 +34,7 @@ void require_writable_outputs(const Request& request) {
   for (const Destination& to : destinations(request, request.distances))
     for (const std::string& path : {to.mesh, to.report, to.states, to.paths, to.html})
       if (!path.empty()) require_writable(path);
-  if (!request.vdb.empty()) {
-    require_writable(request.vdb);
-    require_vdb_writer(request.vdb);
-  }
+  if (!request.vdb.empty()) require_writable(request.vdb);
   if (!request.tolerance) return;
   for (const std::string& path : {request.tolerance->refined_source, request.tolerance->map})
     if (!path.empty()) require_writable(path);

@@ -10,7 +10,7 @@
 #include "vdb_offset/curve/curve_query.h"
 #include "vdb_offset/curves.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/mesh/mean_distances.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/paths/propagate.h"

@@ -4,12 +4,11 @@
 namespace vdb_offset {
 
 void describe_field(const DistanceField& field, const DirectionField& directions, OffsetStatistics& statistics) {
-  statistics.active_voxels = field.leaves->active_voxels();
-  statistics.leaf_nodes = field.leaves->size();
-  const std::size_t beside = sizeof(FieldLeaf) / 2;  // what a leaf node has beside its voxels
-  statistics.phi_bytes = statistics.leaf_nodes * (kLeafVoxels * sizeof(float) + beside);
-  statistics.closest_bytes = statistics.leaf_nodes * (kLeafVoxels * sizeof(std::int32_t) + beside);
-  statistics.gradient_bytes = directions.gradient.size() * sizeof(LeafGradients);
+  statistics.active_voxels = field.phi->activeVoxelCount();
+  statistics.leaf_nodes = field.phi->tree().leafCount();
+  statistics.phi_bytes = field.phi->memUsage();
+  statistics.closest_bytes = field.closest->memUsage();
+  statistics.gradient_bytes = directions.gradient->memUsage();
 }
 
 }  // namespace vdb_offset

@@ -7,14 +7,18 @@
 #include <cmath>
 #include <memory>
 
+#include "vdb_offset/field/leaf_graph.h"
+
 namespace vdb_offset {
 namespace {
+
+using GradientLeaf = openvdb::Vec3STree::LeafNodeType;
 
 /// phi of a leaf node and its halo; NaN where inactive.
 struct PhiBlock {
   float phi[kPaddedVoxels];
 
-  PhiBlock(const LeafGraph& graph, const FieldLeaf& leaf) {
+  PhiBlock(const LeafGraph& graph, const GraphLeaf& leaf) {
     std::fill(std::begin(phi), std::end(phi), std::nanf(""));
     for (int n = 0; n < kLeafVoxels; ++n) copy(leaf, n, padded_index(n >> 6, n >> 3 & 7, n & 7));
     for (int face = 0; face < kFaces; ++face) {
@@ -26,8 +30,8 @@ struct PhiBlock {
   }
 
  private:
-  void copy(const FieldLeaf& leaf, int n, int padded) {
-    if (leaf.is_on(n)) phi[padded] = leaf.phi[static_cast<std::size_t>(n)];
+  void copy(const GraphLeaf& leaf, int n, int padded) {
+    if (leaf.phi->isValueOn(static_cast<openvdb::Index>(n))) phi[padded] = leaf.phi->buffer().data()[n];
   }
 };
 
@@ -39,8 +43,8 @@ float seen_from(float centre, float other, float h) {
   return jump ? -other : other;
 }
 
-openvdb::math::Vec3<float> gradient_at(const PhiBlock& block, int n, float h) {
-  openvdb::math::Vec3<float> gradient(0.0f);
+openvdb::Vec3s gradient_at(const PhiBlock& block, int n, float h) {
+  openvdb::Vec3s gradient(0.0f);
   const float centre = block.phi[n];
   for (int axis = 0; axis < 3; ++axis) {
     const float lower = seen_from(centre, block.phi[n - kPaddedStride[static_cast<std::size_t>(axis)]], h),
@@ -55,58 +59,47 @@ openvdb::math::Vec3<float> gradient_at(const PhiBlock& block, int n, float h) {
 
 }  // namespace
 
-DirectionField make_directions(const DistanceField& field, bool open_surface) {
-  const LeafGraph& graph = *field.leaves;
+DirectionField make_directions(DistanceField& field, bool open_surface) {
+  const LeafGraph graph(field);
   const auto h = static_cast<float>(field.voxel_size);
-  DirectionField directions;
-  directions.leaves = field.leaves;
-  directions.gradient.resize(graph.size());
-  directions.voxel_size = field.voxel_size;
-  directions.open_surface = open_surface;
+  std::vector<std::unique_ptr<GradientLeaf>> leaves(graph.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, graph.size(), 4), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const PhiBlock block(graph, graph[i]);
-      directions.gradient[i] = std::make_unique_for_overwrite<LeafGradients>();
-      LeafGradients& gradient = *directions.gradient[i];
-      gradient.fill(openvdb::math::Vec3<float>(0.0f));
-      for (auto voxel = graph[i].active.beginOn(); voxel; ++voxel)
-        gradient[voxel.pos()] = gradient_at(block, padded_index(static_cast<int>(voxel.pos())), h);
+      leaves[i] = std::make_unique<GradientLeaf>(graph[i].origin, openvdb::Vec3s(0.0f));
+      for (auto voxel = graph[i].phi->cbeginValueOn(); voxel; ++voxel) {
+        const auto n = static_cast<int>(voxel.pos());
+        leaves[i]->setValueOn(voxel.pos(), gradient_at(block, padded_index(n >> 6, n >> 3 & 7, n & 7), h));
+      }
     }
   });
+  DirectionField directions;
+  directions.gradient = openvdb::Vec3SGrid::create();
+  for (auto& leaf : leaves) directions.gradient->tree().addLeaf(leaf.release());
+  directions.phi = field.phi;
+  directions.voxel_size = field.voxel_size;
+  directions.open_surface = open_surface;
   return directions;
 }
 
+DirectionSampler::DirectionSampler(const DirectionField& field)
+    : field_(field), gradient_(field.gradient->getConstAccessor()), phi_(field.phi->getConstAccessor()) {}
+
 void DirectionSampler::look_up(const openvdb::Coord& lowest) {
   nodes_.lowest = lowest;
-  // Two times in three, all eight nodes lie in one leaf node. Else they lie in several, one beyond the other along each
-  // axis of `across`; each is looked up once.
-  const openvdb::Coord origin = lowest & ~(kLeafWidth - 1);
-  std::size_t across = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    if (lowest[axis] - origin[axis] == kLeafWidth - 1) across |= std::size_t{4} >> axis;
-  std::array<std::int32_t, 8> leaves{};
-  for (std::size_t node = 0; node < 8; ++node) {
-    const int i = node >> 2 & 1, j = node >> 1 & 1, k = node & 1;
-    if ((node & ~across) == 0) leaves[node] = leaf_at(origin.offsetBy(i * kLeafWidth, j * kLeafWidth, k * kLeafWidth));
-    const std::int32_t found = leaves[node & across];
-    const openvdb::Coord in_leaf = lowest.offsetBy(i, j, k) & (kLeafWidth - 1);
-    const int n = in_leaf[0] << 6 | in_leaf[1] << 3 | in_leaf[2];
-    nodes_.active[node] = found >= 0 && (*field_.leaves)[static_cast<std::size_t>(found)].is_on(n);
-    nodes_.gradient[node] = Gradient{};
-    if (!nodes_.active[node]) continue;
-    const auto& g = (*field_.gradient[static_cast<std::size_t>(found)])[static_cast<std::size_t>(n)];
+  // A fast path: two times in three, all eight nodes lie in one leaf node.
+  const bool together = (lowest[0] & 7) != 7 && (lowest[1] & 7) != 7 && (lowest[2] & 7) != 7;
+  const GradientLeaf* leaf = together ? gradient_.probeConstLeaf(lowest) : nullptr;
+  const openvdb::Index first = GradientLeaf::coordToOffset(lowest);
+  for (openvdb::Index node = 0; node < 8; ++node) {
+    const openvdb::Index i = node >> 2, j = node >> 1 & 1, k = node & 1, n = first + (i << 6 | j << 3 | k);
+    const auto at = lowest.offsetBy(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k));
+    openvdb::Vec3s g(0.0f);
+    if (!together) nodes_.active[node] = gradient_.probeValue(at, g);
+    else if ((nodes_.active[node] = leaf && leaf->isValueOn(n))) g = leaf->getValue(n);
     nodes_.gradient[node] = Gradient{g[0], g[1], g[2], 0};
-    if (field_.open_surface)
-      nodes_.phi[node] = (*field_.leaves)[static_cast<std::size_t>(found)].phi[static_cast<std::size_t>(n)];
+    if (field_.open_surface && nodes_.active[node]) nodes_.phi[node] = phi_.getValue(at);
   }
-}
-
-std::int32_t DirectionSampler::leaf_at(const openvdb::Coord& origin) {
-  if (origin != last_origin_) {
-    last_origin_ = origin;
-    last_leaf_ = field_.leaves->find(origin);
-  }
-  return last_leaf_;
 }
 
 double DirectionSampler::turn(std::size_t node, const Vec3d& index, int side, double distance) const {

@@ -1,37 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/math/Vec3.h>
+#include <openvdb/tree/ValueAccessor.h>
 
-#include <array>
-#include <memory>
-#include <vector>
-
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
-
-/// Of the voxels of a leaf node; 0 where they are not active.
-using LeafGradients = std::array<openvdb::math::Vec3<float>, kLeafVoxels>;
 
 /// The direction field: grad phi at the voxel centres, smooth enough to follow.
 ///
 /// Central differences, one-sided where a neighbour is missing; at spacing h they smooth over 2 h, and their
 /// trilinear interpolation is Lipschitz, which keeps neighbouring paths in order where the exact gradient jumps.
 struct DirectionField {
-  std::shared_ptr<const LeafGraph> leaves;               ///< The field's own.
-  std::vector<std::unique_ptr<LeafGradients>> gradient;  ///< Of each leaf node.
+  openvdb::Vec3SGrid::Ptr gradient;
+  openvdb::FloatGrid::ConstPtr phi;
   double voxel_size = 0;
   bool open_surface = false;  ///< If so, phi changes sign away from the surface too, beyond its borders.
 };
 
-DirectionField make_directions(const DistanceField& field, bool open_surface);
+DirectionField make_directions(DistanceField& field, bool open_surface);
 
 /// Samples a direction field; one per thread, as it keeps what it looked up last.
 class DirectionSampler {
  public:
-  explicit DirectionSampler(const DirectionField& field) : field_(field) {}
+  explicit DirectionSampler(const DirectionField& field);
 
   /// Trilinear sample of grad phi at x (local frame), over those of the eight nodes that are active, for a point on
   /// side `side` (+1 outside, -1 inside) at the given distance from the surface. On open surfaces, a node
@@ -49,14 +42,13 @@ class DirectionSampler {
     double phi[8];         // of open surfaces
   };
   void look_up(const openvdb::Coord& lowest);
-  std::int32_t leaf_at(const openvdb::Coord& origin);
   /// -1 for a node that has to be turned round, 1 else.
   double turn(std::size_t node, const Vec3d& index, int side, double distance) const;
 
-  Nodes nodes_;
   const DirectionField& field_;
-  std::int32_t last_leaf_ = -1;  // the leaf node that was looked up last, and its origin
-  openvdb::Coord last_origin_ = openvdb::Coord::max();
+  openvdb::Vec3SGrid::ConstAccessor gradient_;
+  openvdb::FloatGrid::ConstAccessor phi_;
+  Nodes nodes_;
 };
 
 }  // namespace vdb_offset

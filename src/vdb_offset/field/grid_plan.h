@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "vdb_offset/field/leaf_graph.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/field/run_bytes.h"
 #include "vdb_offset/grid.h"
 #include "vdb_offset/surface/surface.h"

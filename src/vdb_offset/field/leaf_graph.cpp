@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/field/leaf_graph.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "vdb_offset/base/assert.h"
@@ -16,13 +15,6 @@ openvdb::Coord step(openvdb::Coord origin, int face) {
 }
 
 }  // namespace
-
-void FieldLeaf::fill(float background) {
-  phi = std::make_unique_for_overwrite<float[]>(kLeafVoxels);
-  closest = std::make_unique_for_overwrite<std::int32_t[]>(kLeafVoxels);
-  std::fill_n(phi.get(), kLeafVoxels, background);
-  std::fill_n(closest.get(), kLeafVoxels, -1);
-}
 
 void LeafIndex::reserve(std::size_t count) {
   if (2 * count <= slots_.size()) return;
@@ -54,43 +46,48 @@ std::size_t LeafIndex::slot_of(const openvdb::Coord& origin) const {
   return slot;
 }
 
-LeafGraph::LeafGraph(std::vector<FieldLeaf> leaves, bool slab) : leaves_(std::move(leaves)), slab_(slab) {
-  index_leaves();
-  make_new_leaves();
-}
-
-void LeafGraph::index_leaves() {
-  index_ = {};
-  index_.reserve(leaves_.size());
-  for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    const auto leaf = static_cast<std::int32_t>(i);
-    [[maybe_unused]] const std::int32_t found = index_.find_or_insert(leaves_[i].origin, leaf);
-    VDB_OFFSET_ASSERT(found == leaf);
+LeafGraph::LeafGraph(FieldGrids& grids) : grids_(grids), grid_leaves_(grids.phi->tree().leafCount()) {
+  VDB_OFFSET_ASSERT(grids.closest->tree().leafCount() == grid_leaves_);
+  leaves_.reserve(grid_leaves_);
+  index_.reserve(2 * grid_leaves_);
+  auto closest = grids.closest->tree().beginLeaf();
+  for (auto phi = grids.phi->tree().beginLeaf(); phi; ++phi, ++closest) {
+    VDB_OFFSET_ASSERT(phi->origin() == closest->origin());
+    index_.find_or_insert(phi->origin(), static_cast<std::int32_t>(leaves_.size()));
+    leaves_.push_back({phi->origin(), phi.getLeaf(), closest.getLeaf()});
   }
-}
-
-std::size_t LeafGraph::active_voxels() const {
-  std::size_t sum = 0;
-  for (const FieldLeaf& leaf : leaves_) sum += leaf.active.countOn();
-  return sum;
+  for_each_index(
+      grid_leaves_, [&](std::size_t leaf) { link(leaf, 0); }, 64);
 }
 
 std::int32_t LeafGraph::touch_neighbour(std::int32_t leaf, int face) {
   VDB_OFFSET_ASSERT(static_cast<std::size_t>(leaf) < leaves_.size() && face < open_faces());
-  const FieldLeaf& from = leaves_[static_cast<std::size_t>(leaf)];
+  const GraphLeaf& from = leaves_[static_cast<std::size_t>(leaf)];
   const auto known = from.neighbour[static_cast<std::size_t>(face)];
   if (known >= 0) return known;
   const openvdb::Coord origin = step(from.origin, face);
   const auto next = static_cast<std::int32_t>(leaves_.size()), neighbour = index_.find_or_insert(origin, next);
-  if (neighbour == next) leaves_.emplace_back().origin = origin;
+  if (neighbour == next) leaves_.push_back({origin});
   return neighbour;
 }
 
 void LeafGraph::make_new_leaves() {
-  const std::size_t first_new = linked_;
-  linked_ = leaves_.size();
+  const std::size_t first_new = grid_leaves_ + new_phi_.size();
+  new_phi_.resize(leaves_.size() - grid_leaves_);
+  new_closest_.resize(new_phi_.size());
   for_each_index(
-      leaves_.size() - first_new, [&](std::size_t i) { link(first_new + i, first_new); }, 64);
+      leaves_.size() - first_new,
+      [&](std::size_t i) {
+        GraphLeaf& leaf = leaves_[first_new + i];
+        auto& phi = new_phi_[first_new + i - grid_leaves_];
+        auto& closest = new_closest_[first_new + i - grid_leaves_];
+        phi = std::make_unique<PhiLeaf>(openvdb::PartialCreate(), leaf.origin, grids_.phi->background());
+        closest = std::make_unique<ClosestLeaf>(openvdb::PartialCreate(), leaf.origin, -1);
+        leaf.phi = phi.get();
+        leaf.closest = closest.get();
+        link(first_new + i, first_new);
+      },
+      64);
 }
 
 /// Links a leaf node to its neighbours, and these to it. Neighbours that are new themselves are linked by their own
@@ -105,11 +102,14 @@ void LeafGraph::link(std::size_t leaf, std::size_t first_new) {
   }
 }
 
-void LeafGraph::drop_empty_leaves() {
-  std::erase_if(leaves_, [](const FieldLeaf& leaf) { return leaf.active.isOff(); });
-  index_leaves();
-  linked_ = 0;
-  make_new_leaves();
+void LeafGraph::attach_new_leaves() {
+  for (std::size_t i = 0; i < new_phi_.size(); ++i) {
+    if (new_phi_[i]->isEmpty()) continue;
+    grids_.phi->tree().addLeaf(new_phi_[i].release());
+    grids_.closest->tree().addLeaf(new_closest_[i].release());
+  }
+  new_phi_.clear();
+  new_closest_.clear();
 }
 
 }  // namespace vdb_offset

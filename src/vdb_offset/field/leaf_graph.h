@@ -1,44 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/math/Coord.h>
-#include <openvdb/util/NodeMasks.h>
-
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-namespace vdb_offset {
+#include "vdb_offset/field/field_grids.h"
 
-/// Leaf nodes are cubes of 8^3 voxels; voxel (i, j, k) of one stands at i << 6 | j << 3 | k in its buffers.
-inline constexpr int kLeafWidth = 8;
-inline constexpr int kLeafVoxels = 512;
-using VoxelMask = openvdb::util::NodeMask<3>;
+namespace vdb_offset {
 
 /// Face f of a leaf node looks along axis f / 2, downwards for even f and upwards for odd f.
 inline constexpr int kFaces = 6;
 inline constexpr int opposite(int face) { return face ^ 1; }
 
-/// A leaf node of a field: its voxels, as OpenVDB has them, and its neighbours. Not OpenVDB's own class, which cannot
-/// be used without the code that reads it from files.
-struct FieldLeaf {
+/// A leaf node of both field grids, its raw buffers (voxel (i, j, k) at i << 6 | j << 3 | k) and its neighbours.
+struct GraphLeaf {
   openvdb::Coord origin;
+  PhiLeaf* phi = nullptr;
+  ClosestLeaf* closest = nullptr;
   std::array<std::int32_t, kFaces> neighbour = {-1, -1, -1, -1, -1, -1};  ///< Index in the graph, or -1.
-  VoxelMask active;
-  std::unique_ptr<float[]> phi;             ///< Of all voxels; none yet in a leaf node that was just made.
-  std::unique_ptr<std::int32_t[]> closest;  ///< As phi.
 
   /// 0 or 1; leaf nodes that share a face differ.
   int colour() const { return (origin[0] + origin[1] + origin[2]) / kLeafWidth & 1; }
-  bool is_on(int n) const { return active.isOn(static_cast<openvdb::Index>(n)); }
-  void set_on(int n, float value, std::int32_t triangle) {
-    phi[static_cast<std::size_t>(n)] = value;
-    closest[static_cast<std::size_t>(n)] = triangle;
-    active.setOn(static_cast<openvdb::Index>(n));
-  }
-  /// Makes both buffers, of voxels that are at the background and closest to none.
-  void fill(float background);
 };
 
 /// Finds leaf nodes by their origin. Open addressing: a sweep asks six times for each leaf node that it makes.
@@ -61,40 +45,37 @@ class LeafIndex {
   std::size_t taken_ = 0;
 };
 
-/// The leaf nodes of a field as an array, each knowing those across its faces.
+/// The leaf nodes of a field as an array, each knowing those across its faces, so that a stencil never has to
+/// walk the tree.
 class LeafGraph {
  public:
-  /// \param leaves each of another origin, in any order
-  /// \param slab one leaf node thick in z: the field does not spread along it
-  LeafGraph(std::vector<FieldLeaf> leaves, bool slab);
+  explicit LeafGraph(FieldGrids& grids);
 
   std::size_t size() const { return leaves_.size(); }
   /// Faces that a field spreads across: those of a slab look along x and y, the first four.
-  int open_faces() const { return slab_ ? 4 : kFaces; }
-  const FieldLeaf& operator[](std::size_t i) const { return leaves_[i]; }
-  FieldLeaf& operator[](std::size_t i) { return leaves_[i]; }
-  /// The leaf node with this origin, or -1.
-  std::int32_t find(const openvdb::Coord& origin) const { return index_.find(origin); }
-  std::size_t active_voxels() const;
+  int open_faces() const { return grids_.slab ? 4 : kFaces; }
+  const GraphLeaf& operator[](std::size_t i) const { return leaves_[i]; }
 
   /// The neighbour across a face; if there is none, it is noted down, for make_new_leaves() to make. Not thread-safe.
   std::int32_t touch_neighbour(std::int32_t leaf, int face);
 
-  /// Links the leaf nodes that have been noted down to their neighbours, in parallel. They have no active voxels, and
-  /// no buffers.
+  /// Makes the leaf nodes that have been noted down, in parallel: without active voxels, and with buffers yet to be
+  /// allocated (LeafNode::allocate).
   void make_new_leaves();
 
-  /// Takes leaf nodes without active voxels out. The others keep their order, and get new numbers.
-  void drop_empty_leaves();
+  /// Hands those leaf nodes that make_new_leaves() made and that have active voxels to the grids' trees, and frees the
+  /// others: the graph is of no more use then.
+  void attach_new_leaves();
 
  private:
-  void index_leaves();
   void link(std::size_t leaf, std::size_t first_new);
 
-  std::vector<FieldLeaf> leaves_;
-  bool slab_;
-  std::size_t linked_ = 0;  // the first so many have been linked
+  FieldGrids& grids_;
+  std::vector<GraphLeaf> leaves_;
+  std::size_t grid_leaves_;  // the first so many are the grids' own
   LeafIndex index_;
+  std::vector<std::unique_ptr<PhiLeaf>> new_phi_;
+  std::vector<std::unique_ptr<ClosestLeaf>> new_closest_;
 };
 
 /// A leaf node's voxels with one more on every side, filled from the leaf nodes across its faces. Voxels beyond an

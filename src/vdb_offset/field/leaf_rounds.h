@@ -12,7 +12,7 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/progress_count.h"
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/leaf_graph.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {

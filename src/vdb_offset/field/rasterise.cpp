@@ -184,17 +184,20 @@ class LeafCanvas {
         }
   }
 
-  /// Sets the voxels of the leaf node that lie in the band. It gets buffers if any does.
-  void store(FieldLeaf& leaf, float background) const {
+  /// Sets the voxels of both leaf nodes that lie in the band. Returns false if none does.
+  bool store(PhiLeaf& phi, ClosestLeaf& closest) const {
+    bool any = false;
     for (int n = 0; n < kLeafVoxels; ++n) {
       if (triangle_[n] == kNone || squared_[n] > options_.band * options_.band) continue;
-      if (!leaf.phi) leaf.fill(background);
+      any = true;
       const Vec3d x = centre(n >> 6, n >> 3 & 7, n & 7);
       const TrianglePoint at = surface_.closest_on(triangle_[n], x);
       const bool inside = surface_.pseudonormal(triangle_[n], at.feature).dot(x - at.point) < 0;
       const auto distance = static_cast<float>(std::sqrt(squared_[n]));
-      leaf.set_on(n, inside ? -distance : distance, static_cast<std::int32_t>(triangle_[n]));
+      phi.setValueOn(static_cast<openvdb::Index>(n), inside ? -distance : distance);
+      closest.setValueOn(static_cast<openvdb::Index>(n), static_cast<std::int32_t>(triangle_[n]));
     }
+    return any;
   }
 
  private:
@@ -222,26 +225,32 @@ Front rasterise(const Surface& surface, const RasteriseOptions& options, const P
   Progress progress(callback, Stage::Rasterise, 2 * surface.triangles.size());
   const Bins bins = sort_into_leaf_nodes(surface, options, progress);
   Front front;
-  front.voxel_size = options.voxel_size;
-  front.background = static_cast<float>(options.band);
-  front.origin = surface.origin;
-  front.slab = options.slab;
+  static_cast<FieldGrids&>(front) = make_field_grids(options.voxel_size, options.band, surface.origin);
   front.band = options.band;
-  std::vector<FieldLeaf> leaves(bins.leaf_begin.size() - 1);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 4), [&](const auto& range) {
+  front.slab = options.slab;
+  const std::size_t leaves = bins.leaf_begin.size() - 1;
+  std::vector<std::unique_ptr<PhiLeaf>> phi(leaves);
+  std::vector<std::unique_ptr<ClosestLeaf>> closest(leaves);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves, 4), [&](const auto& range) {
     for (std::size_t leaf = range.begin(); leaf != range.end(); ++leaf) {
       const Coord origin = unpack(bins.runs[bins.leaf_begin[leaf]].leaf);
       LeafCanvas canvas(surface, options, origin);
       for (std::size_t run = bins.leaf_begin[leaf]; run < bins.leaf_begin[leaf + 1]; ++run)
         for (const auto triangle : bins.triangles(bins.runs[run])) canvas.draw(triangle);
-      leaves[leaf].origin = origin;
-      canvas.store(leaves[leaf], front.background);
+      auto phi_leaf = std::make_unique<PhiLeaf>(origin, front.phi->background());
+      auto closest_leaf = std::make_unique<ClosestLeaf>(origin, -1);
+      if (canvas.store(*phi_leaf, *closest_leaf)) {
+        phi[leaf] = std::move(phi_leaf);
+        closest[leaf] = std::move(closest_leaf);
+      }
     }
-    progress.advance((range.end() - range.begin()) * surface.triangles.size() /
-                     std::max<std::size_t>(leaves.size(), 1));
+    progress.advance((range.end() - range.begin()) * surface.triangles.size() / std::max<std::size_t>(leaves, 1));
   });
-  std::erase_if(leaves, [](const FieldLeaf& leaf) { return leaf.active.isOff(); });
-  front.leaves = std::make_shared<LeafGraph>(std::move(leaves), options.slab);
+  for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
+    if (!phi[leaf]) continue;
+    front.phi->tree().addLeaf(phi[leaf].release());
+    front.closest->tree().addLeaf(closest[leaf].release());
+  }
   return front;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/run.h"
 #include "vdb_offset/surface/surface.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/run.h"
 #include "vdb_offset/surface/surface.h"
@@ -26,7 +26,7 @@ struct SweepOptions {
 /// compete. The eikonal solver uses the full one-, two- and three-neighbour update and hands on the triangle of the
 /// neighbour that phi came from, as a hint only.
 ///
-/// The front's leaf nodes are taken over and extended. The result does not depend on the number of threads.
+/// The front's grids are taken over and extended. The result does not depend on the number of threads.
 /// Memory: 20 bytes a voxel of leaf nodes, of which 8 stay. Cost: O(voxels), less than two visits each.
 /// \throw InvalidInput if the front has no active voxel.
 DistanceField sweep(Front front, const Surface& surface, const SweepOptions& options,

@@ -36,12 +36,12 @@ class ClosestSweep {
  public:
   ClosestSweep(DistanceField& field, const Surface& surface)
       : surface_(surface),
-        graph_(*field.leaves),
+        graph_(field),
         h_(field.voxel_size),
         voxels_per_unit_(1 / h_),
         per_voxel_(static_cast<float>(1 / h_)),
         reach_(field.reach),
-        background_(field.background),
+        background_(field.phi->background()),
         front_leaves_(graph_.size()) {
     const auto squared_voxels = [&](double length, float more) {
       const auto voxels = static_cast<float>(length / h_) + kSampling + more;
@@ -53,7 +53,7 @@ class ClosestSweep {
     walk_outside_ = squared_voxels(reach_.outside, kWalkBeyond);
     grow(front_leaves_);
     frozen_.reserve(front_leaves_);
-    for (std::size_t i = 0; i < front_leaves_; ++i) frozen_.push_back(graph_[i].active);
+    for (std::size_t i = 0; i < front_leaves_; ++i) frozen_.push_back(graph_[i].phi->getValueMask());
   }
 
   void run(const ProgressCallback& callback) {
@@ -68,7 +68,7 @@ class ClosestSweep {
       });
     for_each_index(
         pools_.size(), [&](std::size_t i) { pools_[i].reset(); }, 16);
-    graph_.drop_empty_leaves();
+    graph_.attach_new_leaves();
   }
 
  private:
@@ -105,13 +105,13 @@ class ClosestSweep {
 
   /// Finds the closest points of the front's voxels, on the triangles that the rasteriser has found.
   void find_points_of_front(std::size_t leaf) {
-    std::int32_t* id = points_[leaf].id = graph_[leaf].closest.get();
+    std::int32_t* id = points_[leaf].id = graph_[leaf].closest->buffer().data();
     for (auto& axis : points_[leaf].points->p) std::fill(std::begin(axis), std::end(axis), kFarPoint);
     for (auto voxel = frozen_[leaf].beginOn(); voxel; ++voxel) {
       const auto n = static_cast<int>(voxel.pos());
       const auto triangle = static_cast<std::uint32_t>(id[n]);
       set_point(leaf, n, surface_.closest_on(triangle, centre(leaf, n)).point);
-      id[n] = with_side(triangle, std::signbit(graph_[leaf].phi[static_cast<std::size_t>(n)]));
+      id[n] = with_side(triangle, std::signbit(graph_[leaf].phi->buffer().data()[n]));
     }
   }
 
@@ -120,8 +120,8 @@ class ClosestSweep {
     ClosestBlock block;
     prefetch(leaf);
     if (points_[leaf].id == nullptr) {
-      graph_[leaf].closest = std::make_unique_for_overwrite<std::int32_t[]>(kLeafVoxels);
-      points_[leaf].id = graph_[leaf].closest.get();
+      graph_[leaf].closest->allocate();
+      points_[leaf].id = graph_[leaf].closest->buffer().data();
       block.forget();
     } else {
       load_own(leaf, block);
@@ -262,14 +262,13 @@ class ClosestSweep {
   /// Finds the closest triangle of every voxel by a walk over the mesh. The walk starts at the triangle that was handed
   /// on or, if that is nearer, at the closest triangle of a neighbour.
   void settle(std::size_t leaf) {
-    FieldLeaf& at = graph_[leaf];
-    if (!at.phi) {
-      at.phi = std::make_unique_for_overwrite<float[]>(kLeafVoxels);
-      std::fill_n(at.phi.get(), kLeafVoxels, background_);
-    }
-    float* phi = at.phi.get();
+    const GraphLeaf& at = graph_[leaf];
+    at.phi->allocate();
+    float* phi = at.phi->buffer().data();
+    if (leaf >= front_leaves_) std::fill_n(phi, kLeafVoxels, background_);
     std::int32_t* id = points_[leaf].id;
     auto& p = points_[leaf].points->p;
+    openvdb::util::NodeMask<3> active = at.phi->getValueMask();
     for_each_row([&](int i, int j, int, int row) {
       const unsigned frozen = frozen_row(leaf, row);
       for (int k = 0; k < kLeafWidth; ++k) {
@@ -287,7 +286,7 @@ class ClosestSweep {
             set_point(leaf, n, nearest.point);
             phi[n] = static_cast<float>(inside ? -distance : distance);
             id[n] = static_cast<std::int32_t>(triangle);
-            at.active.setOn(static_cast<openvdb::Index>(n));
+            active.setOn(static_cast<openvdb::Index>(n));
             continue;
           }
         }
@@ -295,6 +294,8 @@ class ClosestSweep {
         p[0][n] = kFarPoint;
       }
     });
+    at.phi->setValueMask(active);
+    at.closest->setValueMask(active);
   }
 
   /// Squared distance from voxel (i, j, k) to the closest point of voxel n.
@@ -323,7 +324,7 @@ class ClosestSweep {
 
   /// A last look at the neighbours' closest points: where surfaces compete, the samples may have chosen the wrong one.
   void compare_with_neighbours(std::size_t leaf) {
-    if (graph_[leaf].active.isOff()) return;
+    if (graph_[leaf].phi->isEmpty()) return;
     ClosestBlock block;
     prefetch(leaf);
     load_own(leaf, block);
@@ -345,8 +346,8 @@ class ClosestSweep {
   /// from n on; below 0 for those that have nothing to gain. False if that is so of all of them.
   bool find_limits(std::size_t leaf, int n, float (&limit)[kLeafWidth]) const {
     const auto tolerance = static_cast<float>(kTolerance);
-    const float* phi = graph_[leaf].phi.get() + n;
-    const unsigned on = graph_[leaf].active.getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8));
+    const float* phi = graph_[leaf].phi->buffer().data() + n;
+    const unsigned on = graph_[leaf].phi->getValueMask().getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8));
     const unsigned open = on & ~frozen_row(leaf, n);
     if (open == 0) return false;
     for (int k = 0; k < kLeafWidth; ++k) {
@@ -366,7 +367,7 @@ class ClosestSweep {
     auto triangle = static_cast<std::uint32_t>(id);
     const TrianglePoint nearest = surface_.walk_to_closest(centre(leaf, n), triangle);
     const double distance = std::sqrt(nearest.squared_distance);
-    float& phi = graph_[leaf].phi[static_cast<std::size_t>(n)];
+    float& phi = graph_[leaf].phi->buffer().data()[n];
     if (distance >= std::abs(phi)) return;
     phi = std::copysign(static_cast<float>(distance), phi);
     points_[leaf].id[n] = static_cast<std::int32_t>(triangle);
@@ -374,7 +375,7 @@ class ClosestSweep {
   }
 
   const Surface& surface_;
-  LeafGraph& graph_;
+  LeafGraph graph_;
   double h_, voxels_per_unit_;
   float per_voxel_;
   Reach reach_;
@@ -382,7 +383,7 @@ class ClosestSweep {
   float reach_inside_, reach_outside_;  // squared, in voxels, with kSampling added
   float walk_inside_, walk_outside_;    // squared, in voxels: voxels within it walk to their closest triangle
   std::size_t front_leaves_;
-  std::vector<VoxelMask> frozen_;  // voxels of the front, for its leaf nodes
+  std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
   std::vector<LeafPoints> points_;
   std::vector<std::unique_ptr<ClosestPoints[]>> pools_;
 };

@@ -42,22 +42,22 @@ double godunov(double a, double b, double c) {
 class EikonalSweep {
  public:
   explicit EikonalSweep(DistanceField& field)
-      : graph_(*field.leaves),
+      : graph_(field),
         h_(static_cast<float>(field.voxel_size)),
         reach_inside_(static_cast<float>(field.reach.inside / field.voxel_size)),
         reach_outside_(static_cast<float>(field.reach.outside / field.voxel_size)),
-        background_(field.background),
+        background_(field.phi->background()),
         front_leaves_(graph_.size()),
         visited_(front_leaves_, 0) {
     frozen_.reserve(front_leaves_);
-    for (std::size_t i = 0; i < front_leaves_; ++i) frozen_.push_back(graph_[i].active);
+    for (std::size_t i = 0; i < front_leaves_; ++i) frozen_.push_back(graph_[i].phi->getValueMask());
   }
 
   void run(const ProgressCallback& callback) {
     Progress progress(callback, Stage::Sweep, 16 * front_leaves_);
     LeafRounds(graph_).run(
         progress, [](std::size_t) {}, [&](std::size_t leaf) { return relax(leaf); });
-    graph_.drop_empty_leaves();
+    graph_.attach_new_leaves();
   }
 
  private:
@@ -66,7 +66,7 @@ class EikonalSweep {
   Pending relax(std::size_t leaf) {
     EikonalBlock block(leaf < front_leaves_ && !visited_[leaf]);
     if (leaf < front_leaves_) visited_[leaf] = 1;
-    else if (!graph_[leaf].phi) graph_[leaf].fill(background_);
+    else if (graph_[leaf].phi->buffer().empty()) allocate(leaf);
     load(leaf, block);
     for (int order = 0, idle = 0; idle < 8; order = (order + 1) % 8)
       idle = sweep_once(leaf, block, order) ? 0 : idle + 1;
@@ -74,23 +74,29 @@ class EikonalSweep {
     return find_pending(block);
   }
 
+  void allocate(std::size_t leaf) {
+    const GraphLeaf& at = graph_[leaf];
+    at.phi->allocate(), at.closest->allocate();
+    std::fill_n(at.phi->buffer().data(), kLeafVoxels, background_);
+    std::fill_n(at.closest->buffer().data(), kLeafVoxels, -1);
+  }
+
   void load(std::size_t leaf, EikonalBlock& block) const {
     for (int n = 0; n < kLeafVoxels; ++n) unpack(leaf, n, block, padded_index(n));
     for (int face = 0; face < kFaces; ++face) {
       const auto neighbour = graph_[leaf].neighbour[static_cast<std::size_t>(face)];
-      if (neighbour < 0 || !graph_[static_cast<std::size_t>(neighbour)].phi) continue;
+      if (neighbour < 0 || graph_[static_cast<std::size_t>(neighbour)].phi->buffer().empty()) continue;
       for_each_halo_voxel(face,
                           [&](int padded, int n) { unpack(static_cast<std::size_t>(neighbour), n, block, padded); });
     }
   }
 
   void unpack(std::size_t leaf, int n, EikonalBlock& block, int padded) const {
-    const FieldLeaf& from = graph_[leaf];
-    if (!from.is_on(n)) return;
-    const float phi = from.phi[static_cast<std::size_t>(n)];
+    if (!graph_[leaf].phi->isValueOn(static_cast<openvdb::Index>(n))) return;
+    const float phi = graph_[leaf].phi->buffer().data()[n];
     block.size[padded] = std::abs(phi) / h_;
     block.sign[padded] = std::signbit(phi) ? -1 : 1;
-    block.closest[padded] = from.closest[static_cast<std::size_t>(n)];
+    block.closest[padded] = graph_[leaf].closest->buffer().data()[n];
   }
 
   bool is_frozen(std::size_t leaf, int n) const {
@@ -134,7 +140,8 @@ class EikonalSweep {
       const int padded = padded_index(n);
       if (is_frozen(leaf, n) || block.size[padded] == kUnset) continue;
       const float phi = block.size[padded] * h_;
-      graph_[leaf].set_on(n, block.sign[padded] < 0 ? -phi : phi, block.closest[padded]);
+      graph_[leaf].phi->setValueOn(static_cast<openvdb::Index>(n), block.sign[padded] < 0 ? -phi : phi);
+      graph_[leaf].closest->setValueOn(static_cast<openvdb::Index>(n), block.closest[padded]);
     }
   }
 
@@ -158,13 +165,13 @@ class EikonalSweep {
     return pending;
   }
 
-  LeafGraph& graph_;
+  LeafGraph graph_;
   float h_;
   float reach_inside_, reach_outside_;  // in voxels
   float background_;
   std::size_t front_leaves_;
-  std::vector<std::uint8_t> visited_;  // of each leaf node of the front: 1 once it has been visited
-  std::vector<VoxelMask> frozen_;      // voxels of the front, for its leaf nodes
+  std::vector<std::uint8_t> visited_;               // of each leaf node of the front: 1 once it has been visited
+  std::vector<openvdb::util::NodeMask<3>> frozen_;  // voxels of the front, for its leaf nodes
 };
 
 }  // namespace

@@ -4,15 +4,15 @@
 #include "vdb_offset/base/progress_count.h"
 
 #include <fmt/format.h>
+#include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <memory>
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/base/parallel.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/field/leaf_graph.h"
 
 namespace vdb_offset {
 namespace {
@@ -163,16 +163,22 @@ IsoGrid rasterise_iso(const ClosestQuery& query, const Inside& inside, double le
   const IsoRasteriser rasteriser(query, inside, level, lattice);
   const std::vector<Cube> leaves = rasteriser.find_leaves(most_leaf_nodes);
   const auto beyond = static_cast<float>(lattice.voxel_size);
-  std::vector<Coord> origins;
-  origins.reserve(leaves.size());
-  for (const Cube& leaf : leaves) origins.push_back(leaf.at);
-  Progress progress(callback, Stage::Rasterise, leaves.size());
   IsoGrid grid;
+  grid.phi = openvdb::FloatGrid::create(beyond);
   grid.leaf_nodes = leaves.size();
-  grid.phi = make_level_set(origins, beyond, [&](std::size_t l, float* phi) {
-    rasteriser.fill(leaves[l], phi);
-    progress.advance(1);
-  });
+  std::vector<std::unique_ptr<PhiLeaf>> nodes(leaves.size());
+  Progress progress(callback, Stage::Rasterise, leaves.size());
+  for_each_index(
+      leaves.size(),
+      [&](std::size_t l) {
+        nodes[l] = std::make_unique<PhiLeaf>(leaves[l].at, 0.0f, true);
+        rasteriser.fill(leaves[l], nodes[l]->buffer().data());
+        progress.advance(1);
+      },
+      8);
+  for (auto& node : nodes) grid.phi->tree().addLeaf(node.release());
+  // No grid edge from a leaf node to the cubes that are left out crosses the surface: these have the signs beside them.
+  openvdb::tools::signedFloodFillWithValues(grid.phi->tree(), beyond, -beyond);
   return grid;
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-
-#include "vdb_offset/grids/level_set.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/run.h"
 #include "vdb_offset/surface/inside.h"
@@ -20,7 +18,7 @@ struct Lattice {
 
 /// The leaf nodes that an iso-surface phi = level passes through.
 struct IsoGrid {
-  std::shared_ptr<const LevelSet> phi;  ///< phi - level at voxel corners, world units; index space.
+  openvdb::FloatGrid::Ptr phi;  ///< phi - level at voxel corners, world units; index space.
   std::size_t leaf_nodes = 0;
 };
 

@@ -3,6 +3,8 @@
 
 #include "vdb_offset/base/progress_count.h"
 
+#include <openvdb/tools/VolumeToMesh.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -20,7 +22,7 @@ using openvdb::Coord;
 class Projection {
  public:
   Projection(const IsoGrid& grid, const IsoLevel& level, const Lattice& lattice, bool merged)
-      : phi_(*grid.phi), level_(level), lattice_(lattice), h_(lattice.voxel_size), merged_(merged) {}
+      : tree_(grid.phi->tree()), level_(level), lattice_(lattice), h_(lattice.voxel_size), merged_(merged) {}
 
   /// Projects a point of index space. Its voxel's corners have both signs, unless it stands for several merged voxels;
   /// then it may go farther.
@@ -48,13 +50,14 @@ class Projection {
   /// Of the voxel corners up to `ring` voxels away that have the other sign, the one towards which the surface seems
   /// nearest.
   std::optional<Vec3d> nearest_corner(const Coord& cell, int ring, const Vec3d& index, double here) const {
+    openvdb::tree::ValueAccessor<const openvdb::FloatTree> accessor(tree_);
     std::optional<Vec3d> nearest;
     double least = 0;
     for (int i = -ring; i <= 1 + ring; ++i)
       for (int j = -ring; j <= 1 + ring; ++j)
         for (int k = -ring; k <= 1 + ring; ++k) {
           const Coord corner = cell.offsetBy(i, j, k);
-          const double there = phi_.value(corner);
+          const double there = accessor.getValue(corner);
           if ((there < 0) == (here < 0)) continue;
           const double away = (corner.asVec3d() - index).length() * std::abs(here) / (std::abs(here) + std::abs(there));
           if (nearest && away >= least) continue;
@@ -64,7 +67,7 @@ class Projection {
     return nearest;
   }
 
-  const LevelSet& phi_;
+  const openvdb::FloatTree& tree_;
   const IsoLevel& level_;
   const Lattice& lattice_;
   double h_;
@@ -150,7 +153,10 @@ void project(const IsoGrid& grid, const IsoLevel& level, const VoxelMesh& voxels
 
 Polygons mesh_iso_surface(const IsoGrid& grid, const Lattice& lattice, const IsoLevel& level, double adaptivity,
                           bool turned, const ProgressCallback& progress) {
-  const VoxelMesh voxels{grid.phi->surface(adaptivity), lattice, adaptivity > 0};
+  VoxelMesh voxels;
+  voxels.lattice = lattice;
+  voxels.merged = adaptivity > 0;
+  openvdb::tools::volumeToMesh(*grid.phi, voxels.points, voxels.triangles, voxels.quads, 0.0, adaptivity);
   std::vector<Vec3d> positions(voxels.points.size());
   std::vector<std::uint32_t> closest(positions.size());
   project(grid, level, voxels, positions, closest, progress);

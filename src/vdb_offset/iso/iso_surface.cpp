@@ -323,7 +323,6 @@ IsoSource::IsoSource(Surface placed, const std::optional<Solidity>& solidity, do
 
 IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options) {
   require_usable(options);
-  require_level_sets();
   const int threads = thread_count(options.threads);
   IsoResult result;
   tbb::task_arena arena(threads);

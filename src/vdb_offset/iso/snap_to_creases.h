@@ -12,9 +12,12 @@
 
 namespace vdb_offset {
 
-/// The mesh that volumeToMesh makes of an iso-surface.
-struct VoxelMesh : VoxelFaces {
+/// The mesh that volumeToMesh makes, with a vertex in each voxel that the surface passes through.
+struct VoxelMesh {
   Lattice lattice;
+  std::vector<openvdb::Vec3s> points;  ///< In index space.
+  std::vector<openvdb::Vec3I> triangles;
+  std::vector<openvdb::Vec4I> quads;
   bool merged = false;  ///< A vertex may stand for several voxels.
 };
 

@@ -9,7 +9,7 @@
 #include "vdb_offset/base/thread_count.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/field/direction_field.h"
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/paths/propagate.h"
 #include "vdb_offset/statistics.h"

@@ -9,7 +9,7 @@
 
 #include "vdb_offset/base/assert.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/field/distance_field.h"
+#include "vdb_offset/field/field_grids.h"
 #include "vdb_offset/mesh/in_metric.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/parts/border_slide.h"

@@ -48,12 +48,12 @@ std::string worker_program(const std::string& name) { return find_module(name).s
 const void* open_module(const std::string& path, const std::string& name, ModuleUse use) {
   const std::string file = name + ".so";
   const auto fail = [&](const std::string& what) {
-    const std::string message = path + ": expected the module " + file + ", which ";
-    if (use == ModuleUse::Read)
-      throw ReadError(message + "reads it, got: " + what + " (install the whole package, or convert it first)");
-    if (use == ModuleUse::Write)
-      throw WriteError(message + "writes it, got: " + what + " (install the whole package, or write another format)");
-    throw Error(message + "does it, got: " + what + " (install the whole package)");
+    const bool reads = use == ModuleUse::Read;
+    const std::string message = path + ": expected the module " + file + ", which " + (reads ? "reads" : "writes") +
+                                " it, got: " + what + " (install the whole package, or " +
+                                (reads ? "convert it first" : "write another format") + ")";
+    if (reads) throw ReadError(message);
+    throw WriteError(message);
   };
   require_memory_to_start();
   // Never closed: what it has loaded has threads and exit handlers of its own.
