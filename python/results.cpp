@@ -69,7 +69,7 @@ void require_field(const AskedOptions& asked, std::span<const Distances> distanc
 
 void save_field(const AskedOptions& asked, const OffsetResult& result, const std::string& distance) {
   if (asked.vdb.empty()) return;
-  save_vdb(*result.field, asked.vdb, result.statistics.facts.closed(),
+  save_vdb(*result.field, asked.vdb,
            {{"source", "arrays"}, {"offset_distance", distance}, {"made_by", std::string("vdb_offset ") + version()}});
 }
 

@@ -11,23 +11,25 @@
 
 namespace vdb_offset {
 
-/// The grids of a field: phi (signed, < 0 inside, at voxel centres) and the index of the
-/// closest triangle, with the same active voxels. Index (0, 0, 0) lies at the surface's origin.
+/// The grids of a field: phi (signed, < 0 inside, world units, at voxel centres) and the number of the closest triangle
+/// of the triangulated mesh, with the same active voxels. Index (0, 0, 0) lies at the centre of the mesh's bounding box,
+/// or next to it. OpenVDB holds no transform for voxels smaller than about 1.5e-5; such grids have the unit transform.
 struct FieldGrids {
   openvdb::FloatGrid::Ptr phi;
   openvdb::Int32Grid::Ptr closest;
-  double voxel_size = 0;
+  double voxel_size = 0;  ///< World units.
   bool slab = false;  ///< One leaf node thick in z: phi is taken to be the same above and below, as by a ribbon it is.
 };
 
-/// A field that is complete out to its reach.
+/// A field that is complete out to its reach. What OffsetResult::field holds are the very grids that the vertices were
+/// led through. Inactive voxels inside a closed surface are -background, as tools for level sets expect.
 struct DistanceField : FieldGrids {
   Reach reach{};
 };
 
-/// Writes phi and closest as a .vdb file; `metadata` is added to both grids as strings.
+/// Writes both grids as a .vdb file, as they are; `metadata` is added to what the file says of them, as strings.
 /// The file is written under a temporary name and renamed. \throw WriteError, also for voxels below 1.5e-5.
-VDB_OFFSET_API void save_vdb(const DistanceField& field, const std::string& path, bool closed_surface,
-                             const std::vector<std::pair<std::string, std::string>>& metadata);
+VDB_OFFSET_API void save_vdb(const DistanceField& field, const std::string& path,
+                             const std::vector<std::pair<std::string, std::string>>& metadata = {});
 
 }  // namespace vdb_offset

@@ -54,20 +54,6 @@ void check_links(const LeafGraph& graph) {
 
 }  // namespace
 
-TEST_CASE("leaf index: as a map, whatever comes and however often", "[leaf_graph]") {
-  std::mt19937 random(11);
-  LeafIndex index;
-  std::map<Key, std::int32_t> map;
-  for (std::int32_t i = 0; i < 20000; ++i) {
-    const openvdb::Coord origin = origin_of(random, 24);
-    const auto known = map.find(key(origin));
-    CHECK(index.find(origin) == (known == map.end() ? -1 : known->second));
-    const std::int32_t expected = map.try_emplace(key(origin), i).first->second;
-    CHECK(index.find_or_insert(origin, i) == expected);
-  }
-  CHECK(map.size() > 9000);  // so that it has grown many times
-}
-
 TEST_CASE("leaf graph: leaf nodes know those across their faces, and those that are made", "[leaf_graph]") {
   std::mt19937 random(5);
   std::vector<openvdb::Coord> origins;
@@ -84,25 +70,31 @@ TEST_CASE("leaf graph: leaf nodes know those across their faces, and those that 
       const std::int32_t neighbour = graph.touch_neighbour(leaf, face);
       CHECK(graph.touch_neighbour(leaf, face) == neighbour);
     }
-  graph.make_new_leaves();
+  graph.link_new_leaves();
   CHECK(graph.size() > before);
   check_links(graph);
   for (std::size_t i = 0; i < before; ++i)
     for (const std::int32_t neighbour : graph[i].neighbour) CHECK(neighbour >= 0);
+  // Sweeps tell by their buffers whether they have been there.
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    CHECK(graph[i].phi->buffer().empty() == (i >= before));
+    CHECK(graph[i].closest->buffer().empty() == (i >= before));
+  }
 }
 
-TEST_CASE("leaf graph: of the new leaf nodes the grids get those with active voxels", "[leaf_graph]") {
+TEST_CASE("leaf graph: of the new leaf nodes the grids keep those with active voxels", "[leaf_graph]") {
   FieldGrids grids = grids_with({openvdb::Coord(0, 0, 0)});
   LeafGraph graph(grids);
   const std::int32_t above = graph.touch_neighbour(0, 5), below = graph.touch_neighbour(0, 4);
-  graph.make_new_leaves();
+  graph.link_new_leaves();
   const GraphLeaf& taken = graph[static_cast<std::size_t>(above)];
   taken.phi->allocate();
   taken.closest->allocate();
   taken.phi->setValueOn(3, 0.5F);
   taken.closest->setValueOn(3, 0);
   CHECK(graph[static_cast<std::size_t>(below)].phi->isEmpty());
-  graph.attach_new_leaves();
+  CHECK(grids.phi->tree().leafCount() == 3);
+  graph.prune();
   CHECK(grids.phi->tree().leafCount() == 2);
   CHECK(grids.closest->tree().leafCount() == 2);
   CHECK(grids.phi->tree().isValueOn(openvdb::Coord(0, 0, kLeafWidth + 3)));

@@ -254,7 +254,7 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   const Destination& to = outcome.to;
   const OffsetResult& result = outcome.result;
   if (result.field)
-    save_vdb(*result.field, request.vdb, result.statistics.facts.closed(),
+    save_vdb(*result.field, request.vdb,
              {{"source", request.input},
               {"offset_distance", to.distance},
               {"made_by", std::string("vdb_offset ") + version()}});

@@ -76,7 +76,8 @@ std::vector<OffsetResult> offset_prepared(PreparedCurves& curves, std::span<cons
     results.push_back(make_result(curves, distances[i], paths[i]));
     results.back().statistics.disagreeing_distances = disagreeing[i];
   }
-  if (curves.options().keep_field) results.front().field = std::make_shared<DistanceField>(std::move(curves.field()));
+  if (curves.options().keep_field)
+    results.front().field = hand_out(std::move(curves.field()), results.front().statistics.facts.closed());
   return results;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/field/direction_field.h"
 
+#include <openvdb/tree/LeafManager.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -13,25 +14,24 @@ namespace vdb_offset {
 namespace {
 
 using GradientLeaf = openvdb::Vec3STree::LeafNodeType;
+using PhiAccessor = openvdb::tree::ValueAccessor<const openvdb::FloatTree, false>;
 
 /// phi of a leaf node and its halo; NaN where inactive.
 struct PhiBlock {
   float phi[kPaddedVoxels];
 
-  PhiBlock(const LeafGraph& graph, const GraphLeaf& leaf) {
+  PhiBlock(const PhiAccessor& tree, const openvdb::Coord& origin) {
     std::fill(std::begin(phi), std::end(phi), std::nanf(""));
-    for (int n = 0; n < kLeafVoxels; ++n) copy(leaf, n, padded_index(n >> 6, n >> 3 & 7, n & 7));
-    for (int face = 0; face < kFaces; ++face) {
-      const auto neighbour = leaf.neighbour[static_cast<std::size_t>(face)];
-      if (neighbour >= 0)
-        for_each_halo_voxel(face,
-                            [&](int padded, int n) { copy(graph[static_cast<std::size_t>(neighbour)], n, padded); });
-    }
+    const PhiLeaf& leaf = *tree.probeConstLeaf(origin);
+    for (int n = 0; n < kLeafVoxels; ++n) copy(leaf, n, padded_index(n));
+    for (int face = 0; face < kFaces; ++face)
+      if (const PhiLeaf* const neighbour = tree.probeConstLeaf(origin_across(origin, face)))
+        for_each_halo_voxel(face, [&](int padded, int n) { copy(*neighbour, n, padded); });
   }
 
  private:
-  void copy(const GraphLeaf& leaf, int n, int padded) {
-    if (leaf.phi->isValueOn(static_cast<openvdb::Index>(n))) phi[padded] = leaf.phi->buffer().data()[n];
+  void copy(const PhiLeaf& leaf, int n, int padded) {
+    if (leaf.isValueOn(static_cast<openvdb::Index>(n))) phi[padded] = leaf.buffer().data()[n];
   }
 };
 
@@ -59,23 +59,26 @@ openvdb::Vec3s gradient_at(const PhiBlock& block, int n, float h) {
 
 }  // namespace
 
-DirectionField make_directions(DistanceField& field, bool open_surface) {
-  const LeafGraph graph(field);
+DirectionField make_directions(const DistanceField& field, bool open_surface) {
+  const openvdb::FloatTree& phi = field.phi->tree();
   const auto h = static_cast<float>(field.voxel_size);
-  std::vector<std::unique_ptr<GradientLeaf>> leaves(graph.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, graph.size(), 4), [&](const auto& range) {
+  DirectionField directions;
+  directions.gradient = openvdb::Vec3SGrid::create(
+      std::make_shared<openvdb::Vec3STree>(phi, openvdb::Vec3s(0.0f), openvdb::TopologyCopy()));
+  directions.gradient->setName("direction");
+  directions.gradient->setVectorType(openvdb::VEC_COVARIANT);
+  directions.gradient->setTransform(field.phi->transformPtr());
+  const openvdb::tree::LeafManager<openvdb::Vec3STree> leaves(directions.gradient->tree());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.leafCount(), 4), [&](const auto& range) {
+    const PhiAccessor accessor(phi);
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const PhiBlock block(graph, graph[i]);
-      leaves[i] = std::make_unique<GradientLeaf>(graph[i].origin, openvdb::Vec3s(0.0f));
-      for (auto voxel = graph[i].phi->cbeginValueOn(); voxel; ++voxel) {
-        const auto n = static_cast<int>(voxel.pos());
-        leaves[i]->setValueOn(voxel.pos(), gradient_at(block, padded_index(n >> 6, n >> 3 & 7, n & 7), h));
-      }
+      GradientLeaf& leaf = leaves.leaf(i);
+      const PhiBlock block(accessor, leaf.origin());
+      openvdb::Vec3s* const gradient = leaf.buffer().data();
+      for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
+        gradient[voxel.pos()] = gradient_at(block, padded_index(static_cast<int>(voxel.pos())), h);
     }
   });
-  DirectionField directions;
-  directions.gradient = openvdb::Vec3SGrid::create();
-  for (auto& leaf : leaves) directions.gradient->tree().addLeaf(leaf.release());
   directions.phi = field.phi;
   directions.voxel_size = field.voxel_size;
   directions.open_surface = open_surface;

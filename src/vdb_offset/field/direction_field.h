@@ -19,7 +19,7 @@ struct DirectionField {
   bool open_surface = false;  ///< If so, phi changes sign away from the surface too, beyond its borders.
 };
 
-DirectionField make_directions(DistanceField& field, bool open_surface);
+DirectionField make_directions(const DistanceField& field, bool open_surface);
 
 /// Samples a direction field; one per thread, as it keeps what it looked up last.
 class DirectionSampler {

@@ -40,7 +40,16 @@ FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& o
   return grids;
 }
 
-void save_vdb(const DistanceField& field, const std::string& path, bool closed_surface,
+std::shared_ptr<DistanceField> hand_out(DistanceField&& field, bool closed_surface) {
+  if (closed_surface) openvdb::tools::signedFloodFill(field.phi->tree());
+  for (const openvdb::GridBase::Ptr& grid : {openvdb::GridBase::Ptr(field.phi), openvdb::GridBase::Ptr(field.closest)}) {
+    grid->insertMeta("reach_inside", openvdb::DoubleMetadata(field.reach.inside));
+    grid->insertMeta("reach_outside", openvdb::DoubleMetadata(field.reach.outside));
+  }
+  return std::make_shared<DistanceField>(std::move(field));
+}
+
+void save_vdb(const DistanceField& field, const std::string& path,
               const std::vector<std::pair<std::string, std::string>>& metadata) {
   if (!can_hold(field.voxel_size))
     throw WriteError(
@@ -48,20 +57,14 @@ void save_vdb(const DistanceField& field, const std::string& path, bool closed_s
                     "(scale the model up)",
                     path, field.voxel_size));
   openvdb::initialize();  // registers the grid types that a file may hold; further calls do nothing
-  const auto phi = openvdb::gridPtrCast<openvdb::FloatGrid>(field.phi->deepCopyGrid());
-  // Tools for level sets expect inactive voxels and tiles inside a closed surface to be -background.
-  if (closed_surface) openvdb::tools::signedFloodFill(phi->tree());
-  const openvdb::GridBase::Ptr closest = field.closest->copyGrid();
-  for (const openvdb::GridBase::Ptr& grid : {openvdb::GridBase::Ptr(phi), closest}) {
+  openvdb::GridPtrVec grids{field.phi->copyGrid(), field.closest->copyGrid()};  // which share the trees
+  for (const openvdb::GridBase::Ptr& grid : grids)
     for (const auto& [key, value] : metadata) grid->insertMeta(key, openvdb::StringMetadata(value));
-    grid->insertMeta("reach_inside", openvdb::DoubleMetadata(field.reach.inside));
-    grid->insertMeta("reach_outside", openvdb::DoubleMetadata(field.reach.outside));
-  }
   replace_file(path, [&](const std::string& temporary) {
     try {
       std::ofstream file(temporary, std::ios::binary);
       file.exceptions(std::ios::badbit | std::ios::failbit);
-      Archive().write(file, openvdb::GridPtrVec{phi, closest}, true);
+      Archive().write(file, grids, true);
       file.close();
     } catch (const std::ios_base::failure&) {
       throw WriteError(path + ": cannot be written: " + std::strerror(errno));

@@ -4,6 +4,8 @@
 #include <openvdb/Types.h>
 #include <openvdb/openvdb.h>
 
+#include <memory>
+
 #include "vdb_offset/distance_field.h"
 #include "vdb_offset/polygons.h"
 
@@ -24,5 +26,8 @@ struct Front : FieldGrids {
 /// Empty grids of the right class, transform and names. OpenVDB holds no transform for voxels smaller than about
 /// 1.5e-5; such grids keep the unit transform, as the stages never ask for it.
 FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& origin);
+
+/// A field for others to use: its own grids, with metadata, and filled beyond the band as tools for level sets expect.
+std::shared_ptr<DistanceField> hand_out(DistanceField&& field, bool closed_surface);
 
 }  // namespace vdb_offset

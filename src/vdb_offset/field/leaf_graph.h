@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <openvdb/tree/ValueAccessor.h>
+
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "vdb_offset/field/field_grids.h"
@@ -25,30 +26,12 @@ struct GraphLeaf {
   int colour() const { return (origin[0] + origin[1] + origin[2]) / kLeafWidth & 1; }
 };
 
-/// Finds leaf nodes by their origin. Open addressing: a sweep asks six times for each leaf node that it makes.
-class LeafIndex {
- public:
-  void reserve(std::size_t count);
-  /// The leaf node that has this origin already, or else `leaf`, which is inserted.
-  std::int32_t find_or_insert(const openvdb::Coord& origin, std::int32_t leaf);
-  /// The leaf node with this origin, or -1.
-  std::int32_t find(const openvdb::Coord& origin) const;
-
- private:
-  struct Slot {
-    openvdb::Coord origin;
-    std::int32_t leaf = -1;
-  };
-  std::size_t slot_of(const openvdb::Coord& origin) const;
-
-  std::vector<Slot> slots_ = std::vector<Slot>(16);  // a power of two, at most half of them taken
-  std::size_t taken_ = 0;
-};
-
-/// The leaf nodes of a field as an array, each knowing those across its faces, so that a stencil never has to
-/// walk the tree.
+/// An index over the leaf nodes of a field's grids, each with those across its faces, so that a stencil never has to walk
+/// the tree: filled in parallel, and thrown away after a sweep. OpenVDB's trees hold the leaf nodes, find them
+/// (ValueAccessor), and each knows its number in here (LeafNode::transientData()).
 class LeafGraph {
  public:
+  /// Keeps a reference.
   explicit LeafGraph(FieldGrids& grids);
 
   std::size_t size() const { return leaves_.size(); }
@@ -56,27 +39,33 @@ class LeafGraph {
   int open_faces() const { return grids_.slab ? 4 : kFaces; }
   const GraphLeaf& operator[](std::size_t i) const { return leaves_[i]; }
 
-  /// The neighbour across a face; if there is none, it is noted down, for make_new_leaves() to make. Not thread-safe.
+  /// The neighbour across a face; if there is none, it is added to both grids: without active voxels, with buffers yet
+  /// to be allocated (LeafNode::allocate), and yet to be linked. Not thread-safe.
   std::int32_t touch_neighbour(std::int32_t leaf, int face);
 
-  /// Makes the leaf nodes that have been noted down, in parallel: without active voxels, and with buffers yet to be
-  /// allocated (LeafNode::allocate).
-  void make_new_leaves();
+  /// Links the leaf nodes that have been added to those across their faces.
+  void link_new_leaves();
 
-  /// Hands those leaf nodes that make_new_leaves() made and that have active voxels to the grids' trees, and frees the
-  /// others: the graph is of no more use then.
-  void attach_new_leaves();
+  /// Takes the leaf nodes without active voxels out of the grids: the graph is of no more use then.
+  void prune();
 
  private:
-  void link(std::size_t leaf, std::size_t first_new);
+  // These remember the internal nodes alone: an accessor that remembers a leaf node allocates its buffer.
+  template <class Tree>
+  using Accessor = openvdb::tree::ValueAccessor2<Tree, false, 1, 2>;
 
   FieldGrids& grids_;
   std::vector<GraphLeaf> leaves_;
-  std::size_t grid_leaves_;  // the first so many are the grids' own
-  LeafIndex index_;
-  std::vector<std::unique_ptr<PhiLeaf>> new_phi_;
-  std::vector<std::unique_ptr<ClosestLeaf>> new_closest_;
+  std::size_t linked_ = 0;  // so many of them know their neighbours
+  Accessor<openvdb::FloatTree> phi_;
+  Accessor<openvdb::Int32Tree> closest_;
 };
+
+/// The origin of the leaf node across a face.
+inline openvdb::Coord origin_across(openvdb::Coord origin, int face) {
+  origin[face / 2] += face % 2 ? kLeafWidth : -kLeafWidth;
+  return origin;
+}
 
 /// A leaf node's voxels with one more on every side, filled from the leaf nodes across its faces. Voxels beyond an
 /// edge or a corner of the leaf node are not filled: stencils here look along the axes only.

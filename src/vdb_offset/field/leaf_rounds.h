@@ -55,7 +55,7 @@ class LeafRounds {
           progress.advance(range.size());
         });
         for (std::size_t i = 0; i < round.size(); ++i) tell_neighbours(round[i], found[i]);
-        graph_.make_new_leaves();
+        graph_.link_new_leaves();
         grow(graph_.size());
       }
   }

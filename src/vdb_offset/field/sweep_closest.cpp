@@ -68,7 +68,7 @@ class ClosestSweep {
       });
     for_each_index(
         pools_.size(), [&](std::size_t i) { pools_[i].reset(); }, 16);
-    graph_.attach_new_leaves();
+    graph_.prune();
   }
 
  private:

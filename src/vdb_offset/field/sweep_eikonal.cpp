@@ -57,7 +57,7 @@ class EikonalSweep {
     Progress progress(callback, Stage::Sweep, 16 * front_leaves_);
     LeafRounds(graph_).run(
         progress, [](std::size_t) {}, [&](std::size_t leaf) { return relax(leaf); });
-    graph_.attach_new_leaves();
+    graph_.prune();
   }
 
  private:

@@ -42,7 +42,8 @@ std::vector<OffsetResult> offset_prepared(PreparedMesh& mesh, std::span<const Di
   if (!goes_anywhere(farthest_of(wanted))) return results_at_source(mesh, distances);
   std::vector<PreparedMesh::Marched> marched = mesh.march(distances.moved, ridges_of(mesh.options()));
   std::vector<OffsetResult> results = make_results(mesh, distances, std::move(marched));
-  if (mesh.options().keep_field) results.front().field = std::make_shared<DistanceField>(std::move(mesh.field()));
+  if (mesh.options().keep_field)
+    results.front().field = hand_out(std::move(mesh.field()), results.front().statistics.facts.closed());
   return results;
 }
 
