@@ -12,8 +12,9 @@
 namespace vdb_offset {
 
 /// The grids of a field: phi (signed, < 0 inside, world units, at voxel centres) and the number of the closest triangle
-/// of the triangulated mesh, with the same active voxels. Index (0, 0, 0) lies at the centre of the mesh's bounding box,
-/// or next to it. OpenVDB holds no transform for voxels smaller than about 1.5e-5; such grids have the unit transform.
+/// of the triangulated mesh, with the same active voxels. Index (0, 0, 0) is a corner of a leaf node at or below the
+/// mesh's bounding box. OpenVDB holds no transform for voxels smaller than about 1.5e-5; such grids have the unit
+/// transform.
 struct FieldGrids {
   openvdb::FloatGrid::Ptr phi;
   openvdb::Int32Grid::Ptr closest;

@@ -97,7 +97,7 @@ add_library(vdb_offset::vdb_offset ALIAS vdb_offset)
 
 # The public headers: what is not named here is not installed.
 set(public_headers
-  api.h check.h curve_offset.h curves.h distance_field.h distances.h error.h exact_surface.h grid.h iso_surface.h layer_cells.h layers.h
+  api.h check.h curve_offset.h curves.h distance_field.h distances.h error.h exact_surface.h grid.h iso_surface.h layer_cells.h layers.h level_set.h
   mesh_facts.h numbers.h offset.h options.h output_files.h polygons.h refinement.h report.h result.h run.h scene.h
   shell.h statistics.h tolerance.h version.h volume_mesh.h
   io/attributes.h io/cad_file.h io/curve_file.h io/file_bytes.h io/iso_file.h io/mesh_file.h io/page_file.h io/refined_file.h io/shell_file.h io/states_file.h io/volume_file.h)

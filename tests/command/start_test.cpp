@@ -53,10 +53,10 @@ TEST_CASE("command: a missing module is told before the work, in one line", "[co
   for (const std::string kind : {"vtk", "cgns"}) {
     const std::string out = kind == "vtk" ? "out.vtu" : "out.cgns";
     INFO(out);
-    const int status = std::system(("cd / && env -u VDB_OFFSET_MODULES '" + alone + "' '" + shell.file("sphere.obj") +
-                                    "' '" + shell.file(out) + "' --layers 2 --first-height 0.01 --quiet 2>'" + text +
-                                    "' </dev/null")
-                                       .c_str());
+    const int status =
+        std::system(("cd / && env -u VDB_OFFSET_MODULES '" + alone + "' '" + shell.file("sphere.obj") + "' '" +
+                     shell.file(out) + "' --layers 2 --first-height 0.01 --quiet 2>'" + text + "' </dev/null")
+                        .c_str());
     CHECK(WEXITSTATUS(status) == 4);
     const std::string err = shell.slurp(text);
     CHECK_THAT(err, Catch::Contains(out + ": expected the module vdb_offset_" + kind + ".so, which writes it") &&

@@ -323,7 +323,8 @@ TEST_CASE("field: OpenVDB's sampler finds the distance to a sphere and a torus",
           return Vec3d(std::sqrt(1 - z * z) * std::cos(around), std::sqrt(1 - z * z) * std::sin(around), z) * r;
         },
         [](const Vec3d& x) { return x.length() - 1; }, [&](const Vec3d& x) { return 2 / (x.length() - 2 * h); });
-    CHECK(worst < off);UNSCOPED_INFO(worst);
+    CHECK(worst < off);
+    UNSCOPED_INFO(worst);
   }
   SECTION("torus") {
     const double large = 1, small = 0.4;
@@ -338,7 +339,8 @@ TEST_CASE("field: OpenVDB's sampler finds the distance to a sphere and a torus",
         },
         [&](const Vec3d& x) { return from_ring(x) - small; },
         [&](const Vec3d& x) { return 1 / (from_ring(x) - 2 * h) + 1 / (std::hypot(x[0], x[1]) - 2 * h); });
-    CHECK(worst < off);UNSCOPED_INFO(worst);
+    CHECK(worst < off);
+    UNSCOPED_INFO(worst);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Times the library's stages on a mesh file or a scene, from outside, and checks nothing but that they ran.
 #include <fmt/format.h>
+#include <openvdb/tools/Interpolation.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
@@ -137,8 +138,31 @@ std::pair<double, double> check_field(const DistanceField& field, const ClosestQ
   return {std::sqrt(sum / static_cast<double>(taken)), worst};
 }
 
+/// Seconds for samples of directions along short straight paths, as a march takes them, a quarter of a voxel apart: by
+/// the march's own sampler, and by OpenVDB's, which knows neither inactive voxels nor borders.
+std::pair<double, double> sample_seconds(const DirectionField& directions, std::span<const Vec3d> from) {
+  constexpr int kSamples = 16;  // each
+  const double step = directions.voxel_size / 4 / std::sqrt(3.0), per_unit = 1 / directions.voxel_size;
+  Vec3d sum(0.0);
+  const double ours = seconds_of([&] {
+    DirectionSampler sampler(directions);
+    for (const Vec3d& x : from)
+      for (int i = 0; i < kSamples; ++i)
+        if (Vec3d g; sampler(x + Vec3d(i * step), 1, 0, g)) sum += g;
+  });
+  const double theirs = seconds_of([&] {
+    const openvdb::Vec3SGrid::ConstAccessor accessor = directions.gradient->getConstAccessor();
+    for (const Vec3d& x : from)
+      for (int i = 0; i < kSamples; ++i)
+        sum += openvdb::tools::BoxSampler::sample(accessor, (x + Vec3d(i * step)) * per_unit);
+  });
+  if (!std::isfinite(sum.length())) throw Error("samples: expected finite directions");
+  const double count = static_cast<double>(from.size()) * kSamples;
+  return {ours / count, theirs / count};
+}
+
 Json run(const Polygons& mesh, const Options& options, int threads) {
-  std::vector<double> build, raster, swept, direction, tree, query_seconds, batch_seconds;
+  std::vector<double> build, raster, swept, direction, tree, query_seconds, batch_seconds, samples, vdb_samples;
   Json row;
   for (int i = 0; i < options.repeat; ++i) {
     Surface surface;
@@ -156,7 +180,8 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
       field = sweep(std::move(front), surface, {options.eikonal ? Solver::Eikonal : Solver::Closest, reach});
     }));
     const std::size_t field_memory = peak_memory() - memory;
-    direction.push_back(seconds_of([&] { make_directions(field, !surface.facts.closed()); }));
+    DirectionField directions;
+    direction.push_back(seconds_of([&] { directions = make_directions(field, !surface.facts.closed()); }));
     std::unique_ptr<ClosestQuery> query;
     tree.push_back(seconds_of([&] { query = std::make_unique<ClosestQuery>(surface); }));
     const auto queries = make_queries(surface, std::abs(distance), options.queries);
@@ -168,6 +193,9 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
     points.reserve(queries.size());
     for (const auto& [x, hint] : queries) points.push_back(x);
     batch_seconds.push_back(seconds_of([&] { closest_points(*query, points); }));
+    const auto [sample, vdb_sample] = sample_seconds(directions, points);
+    samples.push_back(1e9 * sample);
+    vdb_samples.push_back(1e9 * vdb_sample);
     const auto microseconds_each = [&](const std::vector<double>& seconds) {
       return 1e6 * median(seconds) / static_cast<double>(std::max<std::size_t>(1, options.queries));
     };
@@ -185,6 +213,8 @@ Json run(const Polygons& mesh, const Options& options, int threads) {
            {"sweep_s", median(swept)},
            {"sweep_new_voxels_per_s", static_cast<double>(voxels - band_voxels) / median(swept)},
            {"directions_s", median(direction)},
+           {"direction_sample_ns", median(samples)},
+           {"direction_sample_by_openvdb_ns", median(vdb_samples)},
            {"tree_s", median(tree)},
            {"query_us", microseconds_each(query_seconds)},
            {"batch_query_us", microseconds_each(batch_seconds)},

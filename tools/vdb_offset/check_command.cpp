@@ -119,6 +119,7 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
               "How far straight segments were from the curved ones of a drawing, as it was for the offset [0.001%]",
               [&made](const std::string& text) { made.flatten = parse_flatten(text); });
   declare_part_distances(line, made);
+  declare_level_set(line, made);
   declare_cad(line, made);
   line.flag("--close", "SOURCE's curves were closed for the offset, where their ends are near each other", made.close);
 }

@@ -12,6 +12,7 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/iso_file.h"
 #include "vdb_offset/iso_surface.h"
+#include "vdb_offset/level_set.h"
 #include "vdb_offset/output_files.h"
 
 namespace vdb_offset::tool {
@@ -53,7 +54,8 @@ IsoOptions options_of(const Job& job, const Distances& distance, const std::stri
   options.use_winding = asked.use_winding;
   options.off_source = job.shell;
   options.keep_specks = asked.keep_specks;
-  options.precision = io::precision_of_iso(path, write_options(job.request, path));
+  if (!is_level_set_output(path, job.request))
+    options.precision = io::precision_of_iso(path, write_options(job.request, path));
   options.weld = given.weld;
   options.orient = given.orient;
   options.threads = given.threads;
@@ -66,6 +68,11 @@ IsoOptions options_of(const Job& job, const Distances& distance, const std::stri
 
 io::Transported read_attributes_of(const Job& job) {
   const io::TransportRequest& transport = job.request.iso->transport;
+  if (is_level_set_output(job.request.output, job.request)) {
+    if (transport.is_required)
+      throw InvalidOption("--transport: expected a mesh, as a level set has a place for nothing");
+    return {};
+  }
   if (job.source.file)
     return io::read_transported(*job.source.file, transport, *format_of(job.request.output, job.request));
   if (transport.is_required)
@@ -73,12 +80,23 @@ io::Transported read_attributes_of(const Job& job) {
   return {};
 }
 
+/// The surface as a level set, on voxels as large as is asked for, or as those of the source.
+void write_level_set(const Job& job, const Destination& to, const IsoResult& result) {
+  const GridOptions& grid = job.options.grid;
+  const double of_source = job.source.file ? job.source.file->voxel_size : 0;
+  const bool is_asked = grid.voxel_size || grid.voxels_per_distance;
+  save_grid(make_level_set(result.polygons.view(),
+                           is_asked || of_source == 0 ? result.statistics.plan.voxel_size : of_source),
+            to.mesh, run_metadata(job, to));
+}
+
 void write_iso_surface(const Job& job, const io::Transported& transported, const Destination& to, IsoResult& result,
                        Clock::time_point start) {
   const auto writing = Clock::now();
   const io::WriteOptions options = write_options(job.request, to.mesh);
   const std::optional<io::MeshFile>& file = job.source.file;
-  if (file) tell_losses(job.request, to.mesh, io::write_iso_surface(to.mesh, *file, transported, result, options));
+  if (is_level_set_output(to.mesh, job.request)) write_level_set(job, to, result);
+  else if (file) tell_losses(job.request, to.mesh, io::write_iso_surface(to.mesh, *file, transported, result, options));
   else io::write_iso_surface(to.mesh, result, options);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!to.report.empty()) write_iso_report(job, to, result, start);

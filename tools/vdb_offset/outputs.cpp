@@ -249,15 +249,17 @@ void write_iso_report(const Job& job, const Destination& to, const IsoResult& re
   write_file(to.report, report_json(result.statistics, facts));
 }
 
+std::vector<std::pair<std::string, std::string>> run_metadata(const Job& job, const Destination& to) {
+  return {{"source", job.request.input},
+          {"offset_distance", to.distance},
+          {"made_by", std::string("vdb_offset ") + version()}};
+}
+
 Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point start) {
   const Request& request = job.request;
   const Destination& to = outcome.to;
   const OffsetResult& result = outcome.result;
-  if (result.field)
-    save_vdb(*result.field, request.vdb,
-             {{"source", request.input},
-              {"offset_distance", to.distance},
-              {"made_by", std::string("vdb_offset ") + version()}});
+  if (result.field) save_vdb(*result.field, request.vdb, run_metadata(job, to));
   const PolygonView mesh = job.source.view();
   const auto writing = Clock::now();
   std::optional<Shell> shell;

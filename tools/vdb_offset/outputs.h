@@ -4,6 +4,7 @@
 #include <chrono>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "job.h"
@@ -56,6 +57,9 @@ void write_refinement(const Request& request, const RefinedSource& refined);
 /// The report of a run with --layers, as JSON.
 std::string layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
                           Clock::time_point start);
+
+/// What grids that are written say of the run.
+std::vector<std::pair<std::string, std::string>> run_metadata(const Job& job, const Destination& to);
 
 /// The report of a run with --mode iso, to where it goes.
 void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,

@@ -124,7 +124,7 @@ void tell_remarks(const io::MeshFile& file) {
 namespace {
 
 io::ReadOptions reading_of(const std::string& path, const Request& request) {
-  return {format_of(path, request), cad_reading(request)};
+  return {format_of(path, request), cad_reading(request), request.level_set};
 }
 
 /// Refuses a mesh beside the source whose file says that its numbers are something else.
@@ -167,7 +167,7 @@ Source read_source(const Request& request, bool curves) {
   if (!source.scene) source.file = io::read_mesh(request.input, reading_of(request.input, request));
   else if (!source.scene->mesh_path.empty()) {
     source.files_named.push_back(source.scene->mesh_path);
-    source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request)});
+    source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request), request.level_set});
   }
   if (source.file) {
     use_unit(request, *source.file);

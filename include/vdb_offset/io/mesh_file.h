@@ -20,14 +20,14 @@
 namespace vdb_offset::io {
 
 /// Those from ThreeMf on hold more than a mesh: see Document. Assimp stands for all that is read by that library; Step,
-/// Iges and Brep (of OpenCASCADE) are CAD models.
-enum class Format { Obj, Off, Ply, Stl, ThreeMf, Gltf, Glb, Vtp, Vtk, Vtu, Assimp, Step, Iges, Brep };
+/// Iges and Brep (of OpenCASCADE) are CAD models, and Vdb is OpenVDB's, a surface of whose grids is the mesh.
+enum class Format { Obj, Off, Ply, Stl, ThreeMf, Gltf, Glb, Vtp, Vtk, Vtu, Assimp, Step, Iges, Brep, Vdb };
 
 /// The format that a file name's ending stands for (.obj .off .ply .stl .3mf .gltf .glb .vtp .vtk .vtu, .fbx .dae .3ds,
-/// and .step .stp .iges .igs .brep, any case, also before .gz or .zst), if it does.
+/// .step .stp .iges .igs .brep, and .vdb, any case, also before .gz or .zst), if it does.
 VDB_OFFSET_API std::optional<Format> format_of(std::string_view path);
 VDB_OFFSET_API const char* name(Format format);
-/// Whether files of the format can be written: all but those that are read by Assimp, and CAD models.
+/// Whether meshes can be written in the format: not in those that Assimp reads, in CAD models, and in grids.
 VDB_OFFSET_API bool is_written(Format format);
 /// Whether a file of the format holds a CAD model.
 VDB_OFFSET_API bool is_cad(Format format);
@@ -71,6 +71,7 @@ struct VDB_OFFSET_API MeshFile {
   std::vector<std::string> files_named;    ///< Files that it names and that were not read, as images and materials.
   /// Of a CAD model: its surface, which the polygons are a tessellation of.
   std::shared_ptr<const ExactSurface> exact;
+  double voxel_size = 0;  ///< Of the grid that the mesh is a surface of, along its first axis; 0 of other files.
   /// Vertices at equal positions are of objects that touch, and no two of one object are: not to be welded.
   bool has_touching_objects = false;
 
@@ -89,9 +90,16 @@ struct CadReading {
   double seconds = 300;  ///< How long OpenCASCADE may take for a file, all questions about it included.
 };
 
+/// Which surface of an OpenVDB file becomes a mesh.
+struct VdbReading {
+  std::string grid;                ///< Its name; empty: the only level set, or the only grid of floats.
+  std::optional<double> isovalue;  ///< 0 of a level set, if it is not told; has to be told for other grids.
+};
+
 struct ReadOptions {
   std::optional<Format> format;  ///< By the file's ending, if not told.
   CadReading cad;
+  VdbReading vdb;
 };
 
 /// Reads a mesh, by the file's ending or as told; STL gives three vertices a facet. `.gz` and `.zst` behind that ending

@@ -29,7 +29,6 @@ RunBytes bytes_of_run(CurvesView curves, const OffsetOptions& options, const Yie
   const std::size_t points = curves.positions.size();
   RunBytes bytes{options.bytes_held + points * kPointBytes,
                  points * yield.layers * kLayerPointBytes + further_bytes(points, yield.results)};
-  if (options.keep_field) bytes.always += kVdbModuleBytes;
   if (options.keep_paths) bytes.after_grid += paths_bytes(points, yield.results);
   return bytes;
 }

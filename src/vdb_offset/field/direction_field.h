@@ -22,6 +22,10 @@ struct DirectionField {
 DirectionField make_directions(const DistanceField& field, bool open_surface);
 
 /// Samples a direction field; one per thread, as it keeps what it looked up last.
+///
+/// In the place of openvdb::tools::BoxSampler, which takes 0.9 of the time (`vdb_offset_bench`: 130 and 141 ns beside
+/// an armadillo of 86,000 triangles) but rounds each sample to a float, counts inactive voxels as zeros, and knows
+/// nothing of borders, beyond which phi has the other sign.
 class DirectionSampler {
  public:
   explicit DirectionSampler(const DirectionField& field);

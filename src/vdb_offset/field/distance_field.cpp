@@ -10,18 +10,36 @@
 #include <fstream>
 
 #include "vdb_offset/error.h"
+#include "vdb_offset/level_set.h"
 #include "vdb_offset/output_files.h"
 
 namespace vdb_offset {
 namespace {
 
-/// Whether OpenVDB accepts a transform of this voxel size: if its determinant is below 3e-15, it takes it for singular.
-bool can_hold(double voxel_size) { return voxel_size * voxel_size * voxel_size > 3.1e-15; }
-
 /// Writes to a stream of ours, so that a full disk is noticed: openvdb::io::File hides its stream.
 struct Archive : openvdb::io::Archive {
   using openvdb::io::Archive::write;
 };
+
+/// Writes grids, which share their trees with others, with metadata as strings.
+void write_grids(openvdb::GridPtrVec grids, const std::string& path,
+                 const std::vector<std::pair<std::string, std::string>>& metadata) {
+  openvdb::initialize();  // registers the grid types that a file may hold; further calls do nothing
+  for (const openvdb::GridBase::Ptr& grid : grids)
+    for (const auto& [key, value] : metadata) grid->insertMeta(key, openvdb::StringMetadata(value));
+  replace_file(path, [&](const std::string& temporary) {
+    try {
+      std::ofstream file(temporary, std::ios::binary);
+      file.exceptions(std::ios::badbit | std::ios::failbit);
+      Archive().write(file, grids, true);
+      file.close();
+    } catch (const std::ios_base::failure&) {
+      throw WriteError(path + ": cannot be written: " + std::strerror(errno));
+    } catch (const openvdb::Exception& error) {
+      throw WriteError(path + ": cannot be written: " + error.what());
+    }
+  });
+}
 
 }  // namespace
 
@@ -42,7 +60,8 @@ FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& o
 
 std::shared_ptr<DistanceField> hand_out(DistanceField&& field, bool closed_surface) {
   if (closed_surface) openvdb::tools::signedFloodFill(field.phi->tree());
-  for (const openvdb::GridBase::Ptr& grid : {openvdb::GridBase::Ptr(field.phi), openvdb::GridBase::Ptr(field.closest)}) {
+  for (const openvdb::GridBase::Ptr& grid :
+       {openvdb::GridBase::Ptr(field.phi), openvdb::GridBase::Ptr(field.closest)}) {
     grid->insertMeta("reach_inside", openvdb::DoubleMetadata(field.reach.inside));
     grid->insertMeta("reach_outside", openvdb::DoubleMetadata(field.reach.outside));
   }
@@ -56,22 +75,12 @@ void save_vdb(const DistanceField& field, const std::string& path,
         fmt::format("{}: expected a voxel size above 1.5e-5, which OpenVDB's transforms need, got {:.6g} "
                     "(scale the model up)",
                     path, field.voxel_size));
-  openvdb::initialize();  // registers the grid types that a file may hold; further calls do nothing
-  openvdb::GridPtrVec grids{field.phi->copyGrid(), field.closest->copyGrid()};  // which share the trees
-  for (const openvdb::GridBase::Ptr& grid : grids)
-    for (const auto& [key, value] : metadata) grid->insertMeta(key, openvdb::StringMetadata(value));
-  replace_file(path, [&](const std::string& temporary) {
-    try {
-      std::ofstream file(temporary, std::ios::binary);
-      file.exceptions(std::ios::badbit | std::ios::failbit);
-      Archive().write(file, grids, true);
-      file.close();
-    } catch (const std::ios_base::failure&) {
-      throw WriteError(path + ": cannot be written: " + std::strerror(errno));
-    } catch (const openvdb::Exception& error) {
-      throw WriteError(path + ": cannot be written: " + error.what());
-    }
-  });
+  write_grids({field.phi->copyGrid(), field.closest->copyGrid()}, path, metadata);
+}
+
+void save_grid(const openvdb::FloatGrid::Ptr& grid, const std::string& path,
+               const std::vector<std::pair<std::string, std::string>>& metadata) {
+  write_grids({grid->copyGrid()}, path, metadata);
 }
 
 }  // namespace vdb_offset

@@ -23,6 +23,9 @@ struct Front : FieldGrids {
   double band = 0;  ///< World units.
 };
 
+/// Whether OpenVDB has a transform of this voxel size: it takes one whose determinant is below 3e-15 for singular.
+inline bool can_hold(double voxel_size) { return voxel_size * voxel_size * voxel_size > 3.1e-15; }
+
 /// Empty grids of the right class, transform and names. OpenVDB holds no transform for voxels smaller than about
 /// 1.5e-5; such grids keep the unit transform, as the stages never ask for it.
 FieldGrids make_field_grids(double voxel_size, double background, const Vec3d& origin);

@@ -26,8 +26,8 @@ struct GraphLeaf {
   int colour() const { return (origin[0] + origin[1] + origin[2]) / kLeafWidth & 1; }
 };
 
-/// An index over the leaf nodes of a field's grids, each with those across its faces, so that a stencil never has to walk
-/// the tree: filled in parallel, and thrown away after a sweep. OpenVDB's trees hold the leaf nodes, find them
+/// An index over the leaf nodes of a field's grids, each with those across its faces, so that a stencil never has to
+/// walk the tree: filled in parallel, and thrown away after a sweep. OpenVDB's trees hold the leaf nodes, find them
 /// (ValueAccessor), and each knows its number in here (LeafNode::transientData()).
 class LeafGraph {
  public:

@@ -43,7 +43,7 @@ IsoPlan estimate_iso(const Surface& surface, const IsoOptions& options, bool is_
   const double far = d + kReachVoxels * h;
   const Reach reach{distance < 0 || !is_signed ? far : 0, distance > 0 || !is_signed ? far : 0};
   const double leaves = std::min({by_area, std::pow(across / leaf, 3), count_leaf_nodes(surface, reach, leaf, false)});
-  const std::size_t others = kProcessBytes + kVdbModuleBytes + surface_bytes(surface) + options.bytes_held;
+  const std::size_t others = kProcessBytes + surface_bytes(surface) + options.bytes_held;
   const double bytes = static_cast<double>(others) + leaves * kIsoLeafBytes;
   constexpr double kMost = 0x1p62;  // only to be refused; the casts must not overflow
   IsoPlan plan;

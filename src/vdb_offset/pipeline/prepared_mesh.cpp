@@ -54,7 +54,6 @@ RunBytes bytes_of_run(const MeshParts& parts, PolygonView mesh, const OffsetOpti
   // What is found near obstacles, and the whole of mesh and obstacles as it is judged.
   if (parts.obstacles) bytes.after_grid += 2 * surface_bytes(*parts.obstacles);
   if (options.exact) bytes.always += exact_bytes(mesh.positions.size());
-  if (options.keep_field) bytes.always += kVdbModuleBytes;
   if (options.keep_paths) bytes.after_grid += paths_bytes(mesh.positions.size(), yield.results);
   if (options.off_source) bytes.after_grid += shell_bytes(mesh, surface);
   if (yield.has_targets) bytes.after_grid += refinement_bytes(mesh, surface);

@@ -23,7 +23,8 @@ constexpr const char* kAbout =
 constexpr const char* kMore = R"(
 INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
 behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, a CAD
-model (.step .stp .iges .igs .brep), which is tessellated, and whose offset may be one (.step .stp .brep), or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
+model (.step .stp .iges .igs .brep), which is tessellated, and whose offset may be one (.step .stp .brep), a level set
+(.vdb), which OUTPUT may be as well with --mode iso, or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
 of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
 face.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
@@ -251,6 +252,16 @@ void complete_part_distances(Request& request) {
   if (request.distances.empty() && !request.distances_of.empty()) request.distances.push_back({"0", {}, {}});
 }
 
+void declare_level_set(CommandLine& line, Request& request) {
+  line.option("--grid", "NAME", "Of .vdb files: the grid whose surface is the mesh [the only level set]",
+              request.level_set.grid);
+  line.option("--isovalue", "V",
+              "Of .vdb files: the value on that surface [0 of a level set; to be told for a fog volume]",
+              [&request](const std::string& text) {
+                request.level_set.isovalue = parse_number("--isovalue", text, "a number", -kAny, kAny);
+              });
+}
+
 void declare_cad(CommandLine& line, Request& request) {
   line.option(
       "--deflection", "TOL",
@@ -404,6 +415,7 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_distances(line, draft);
   declare_tolerance(line, draft);
   declare_parts(line, draft);
+  declare_level_set(line, draft.request);
   declare_cad(line, draft.request);
   declare_cad_output(line, draft.request);
   declare_products(line, draft);

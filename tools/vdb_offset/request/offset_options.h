@@ -10,6 +10,7 @@
 namespace vdb_offset::tool {
 
 /// Declares the options that say how CAD models become meshes.
+void declare_level_set(CommandLine& line, Request& request);
 void declare_cad(CommandLine& line, Request& request);
 
 /// Declares the options that give parts distances of their own.

@@ -82,7 +82,7 @@ void require_for_mesh(const Request& request) {
       scene::is_scene(request.input) || format_of(request.input, request),
       request.input +
           ": expected an input that ends in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .fbx, .dae, "
-          ".3ds, .step, .stp, .iges, .igs, .brep (or these and .gz or .zst) or .json, or --format");
+          ".3ds, .step, .stp, .iges, .igs, .brep, .vdb (or these and .gz or .zst) or .json, or --format");
   const bool volume =
       io::volume_format_of(request.output).has_value() || io::structured_format_of(request.output).has_value();
   // A .vtu is a mesh of cells with --layers, and one of faces without.
@@ -103,6 +103,12 @@ void require_for_mesh(const Request& request) {
   require(!is_model || request.collision != Collision::Merge,
           request.output + ": expected --collision limit or cut for a CAD model, got merge");
   require(!request.cuts || request.obstacles.empty(), "--collision cut excludes --obstacle");
+  const bool is_vdb = is_level_set_output(request.output, request);
+  require(!is_vdb || (request.iso && !request.shell),
+          request.output + ": expected --mode iso, without --shell, as a level set is written of that surface alone");
+  const bool from_vdb = format_of(request.input, request) == io::Format::Vdb;
+  require(from_vdb || (request.level_set.grid.empty() && !request.level_set.isovalue),
+          "--grid and --isovalue: expected an input that ends in .vdb");
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
 }
@@ -233,6 +239,10 @@ void require_for_input(const Request& request, bool curves) {
 std::optional<io::Format> format_of(const std::string& path, const Request& request) {
   const auto format = io::format_of(path);
   return format ? format : request.format;
+}
+
+bool is_level_set_output(const std::string& path, const Request& request) {
+  return format_of(path, request) == io::Format::Vdb;
 }
 
 bool is_cad_output(const std::string& path, const Request& request) {

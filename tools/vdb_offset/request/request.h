@@ -100,6 +100,7 @@ struct Request {
   int threads = 0;                            ///< 0: all.
   std::size_t max_memory = 0;                 ///< Bytes.
   bool close = false;                         ///< Join ends of curves that are near each other.
+  io::VdbReading level_set;                   ///< Which surface of an OpenVDB file is the mesh.
   std::optional<scene::Distance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
   double fit_tolerance = 0;                   ///< Of written CAD models, world units; 0: 1e-4 distances.
   bool faceted = false;                       ///< Write a CAD model of triangles where no other can be made.
@@ -133,6 +134,7 @@ void require_for_input(const Request& request, bool curves);
 std::optional<io::Format> format_of(const std::string& path, const Request& request);
 
 /// Whether an output is to be a CAD model.
+bool is_level_set_output(const std::string& path, const Request& request);
 bool is_cad_output(const std::string& path, const Request& request);
 
 /// How meshes are written, in the format of a file of that name.

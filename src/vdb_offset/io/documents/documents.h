@@ -19,6 +19,8 @@ void parse_vtk(MeshFile& file);  ///< .vtp, .vtk and .vtu
 void parse_by_assimp(MeshFile& file);
 void parse_cad(MeshFile& file, const CadReading& how);  ///< .step, .iges and .brep; fills in `exact`, too
 
+void parse_vdb(MeshFile& file, const VdbReading& how);  ///< .vdb; fills in `voxel_size`, too
+
 /// The unit of glTF's coordinates.
 inline constexpr double kMetre = 1e6;  // micrometres
 std::optional<double> unit_of_3mf(const std::string& path);

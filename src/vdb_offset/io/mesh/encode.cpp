@@ -308,6 +308,7 @@ Pieces encode(Format format, const SharedContent& content) {
     case Format::Step:
     case Format::Iges:
     case Format::Brep:
+    case Format::Vdb:
       break;
   }
   return to_stl(content);

@@ -24,7 +24,7 @@
 namespace vdb_offset::io {
 namespace {
 
-MeshFile parse(std::string name, Format format, FileBytes bytes, const CadReading& cad = {}) {
+MeshFile parse(std::string name, Format format, FileBytes bytes, const ReadOptions& how = {}) {
   MeshFile file;
   file.path = std::move(name);
   file.format = format;
@@ -61,7 +61,10 @@ MeshFile parse(std::string name, Format format, FileBytes bytes, const CadReadin
     case Format::Step:
     case Format::Iges:
     case Format::Brep:
-      parse_cad(file, cad);
+      parse_cad(file, how.cad);
+      break;
+    case Format::Vdb:
+      parse_vdb(file, how.vdb);
       break;
   }
   return file;
@@ -72,12 +75,12 @@ struct Ending {
   std::string_view text;
   Format format;
 };
-constexpr Ending kFormatEndings[] = {{"obj", Format::Obj},    {"off", Format::Off},     {"ply", Format::Ply},
-                                     {"stl", Format::Stl},    {"3mf", Format::ThreeMf}, {"gltf", Format::Gltf},
-                                     {"glb", Format::Glb},    {"vtp", Format::Vtp},     {"vtk", Format::Vtk},
-                                     {"vtu", Format::Vtu},    {"fbx", Format::Assimp},  {"dae", Format::Assimp},
-                                     {"3ds", Format::Assimp}, {"step", Format::Step},   {"stp", Format::Step},
-                                     {"iges", Format::Iges},  {"igs", Format::Iges},    {"brep", Format::Brep}};
+constexpr Ending kFormatEndings[] = {
+    {"obj", Format::Obj},     {"off", Format::Off},   {"ply", Format::Ply},    {"stl", Format::Stl},
+    {"3mf", Format::ThreeMf}, {"gltf", Format::Gltf}, {"glb", Format::Glb},    {"vtp", Format::Vtp},
+    {"vtk", Format::Vtk},     {"vtu", Format::Vtu},   {"fbx", Format::Assimp}, {"dae", Format::Assimp},
+    {"3ds", Format::Assimp},  {"step", Format::Step}, {"stp", Format::Step},   {"iges", Format::Iges},
+    {"igs", Format::Iges},    {"brep", Format::Brep}, {"vdb", Format::Vdb}};
 
 /// The source's own document over other positions.
 WrittenDocument rewritten(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
@@ -129,7 +132,7 @@ const char* name(Format format) {
       ->text.data();
 }
 
-bool is_written(Format format) { return format != Format::Assimp && !is_cad(format); }
+bool is_written(Format format) { return format != Format::Assimp && format != Format::Vdb && !is_cad(format); }
 
 bool is_cad(Format format) { return format == Format::Step || format == Format::Iges || format == Format::Brep; }
 
@@ -139,7 +142,7 @@ MeshFile read_mesh(const std::string& path, std::optional<Format> format) {
 
 MeshFile read_mesh(const std::string& path, const ReadOptions& options) {
   const Format known = require_format(path, options.format);
-  return parse(path, known, FileBytes::open(path), options.cad);
+  return parse(path, known, FileBytes::open(path), options);
 }
 
 MeshFile parse_mesh(const std::string& name, Format format, std::string bytes) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/level_set.h"
+
+#include <fmt/format.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include "vdb_offset/base/memory.h"
+#include "vdb_offset/error.h"
+#include "vdb_offset/field/count_leaf_nodes.h"
+#include "vdb_offset/field/rasterise.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+openvdb::FloatGrid::Ptr make_level_set(PolygonView mesh, double voxel_size) {
+  if (mesh.face_count() == 0) throw InvalidInput("level set: expected a mesh of at least one face, got none");
+  if (!can_hold(voxel_size))
+    throw InvalidInput(
+        fmt::format("level set: expected a voxel size above 1.5e-5, which OpenVDB's transforms need, got {:.6g} "
+                    "(scale the model up)",
+                    voxel_size));
+  Surface surface = build_surface(mesh, {});
+  to_local_frame(surface, voxel_size);
+  const double band = openvdb::LEVEL_SET_HALF_WIDTH * voxel_size;
+  // Both grids of the band, and the triangles of each leaf node.
+  constexpr double kLeafBytes = 2 * 4 * kLeafVoxels + 1000;
+  require_memory(
+      static_cast<std::size_t>(kLeafBytes * count_leaf_nodes(surface, {band, band}, kLeafWidth * voxel_size, false)),
+      "level set");
+  const openvdb::FloatGrid::Ptr phi = rasterise(surface, {voxel_size, band}).phi;
+  openvdb::tools::signedFloodFill(phi->tree());
+  phi->setName("surface");
+  return phi;
+}
+
+}  // namespace vdb_offset
