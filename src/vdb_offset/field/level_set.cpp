@@ -27,7 +27,7 @@ openvdb::FloatGrid::Ptr make_level_set(PolygonView mesh, double voxel_size) {
   require_memory(
       static_cast<std::size_t>(kLeafBytes * count_leaf_nodes(surface, {band, band}, kLeafWidth * voxel_size, false)),
       "level set");
-  const openvdb::FloatGrid::Ptr phi = rasterise(surface, {voxel_size, band}).phi;
+  openvdb::FloatGrid::Ptr phi = rasterise(surface, {voxel_size, band}).phi;
   openvdb::tools::signedFloodFill(phi->tree());
   phi->setName("surface");
   return phi;

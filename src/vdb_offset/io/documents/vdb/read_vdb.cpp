@@ -152,7 +152,7 @@ class GridMesher {
  private:
   /// \throw InvalidInput for numbers that are not finite, OutOfBudget for a surface that may be too large for memory
   void look_at_values() {
-    constexpr std::size_t kBytesForEach = 64;  // voxel that the surface may pass through; not measured
+    constexpr double kBytesForEach = 64;  // voxel that the surface may pass through; not measured
     bool all = std::isfinite(grid_.background());
     double crossed = 0;  // at most: all voxels of leaf nodes, and those on the sides of tiles
     for (auto value = grid_.cbeginValueOn(); value; ++value) {
@@ -162,8 +162,8 @@ class GridMesher {
     }
     if (!all)
       throw InvalidInput(fmt::format("{}: expected finite numbers in the {}, got others", file_.path, in_words(grid_)));
-    if (crossed > static_cast<double>(std::numeric_limits<std::size_t>::max() / kBytesForEach)) crossed = 1e17;
-    require_memory(kBytesForEach * static_cast<std::size_t>(crossed), file_.path);
+    constexpr double kNoMemory = 1e18;  // bytes
+    require_memory(static_cast<std::size_t>(std::min(kBytesForEach * crossed, kNoMemory)), file_.path);
   }
 
   /// Goes from a point that is about on the surface to where the values, interpolated, are the isovalue: a few steps of
