@@ -4,13 +4,12 @@
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
-#include <string>
 #include <type_traits>
 #include <vector>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/polygons.h"
@@ -32,24 +31,25 @@ concept HalfEdgeMesh = std::derived_from<M, OpenMesh::BaseKernel> && requires(M&
   mesh.all_faces();
 };
 
+namespace detail {
+[[noreturn]] VDB_OFFSET_API void refuse_deleted();
+[[noreturn]] VDB_OFFSET_API void refuse_face(std::size_t face);
+}  // namespace detail
+
 /// Copies a mesh's vertices and faces in the order of their handles.
 /// \throw InvalidInput if it has deleted elements: garbage_collection() makes them go
 template <HalfEdgeMesh M>
 Polygons to_polygons(const M& mesh) {
   Polygons polygons;
   polygons.positions.reserve(mesh.n_vertices());
-  const auto require_there = [](bool is_deleted) {
-    if (is_deleted)
-      throw InvalidInput("mesh: expected no deleted elements, got some (call garbage_collection() before)");
-  };
   for (const auto vertex : mesh.all_vertices()) {
-    require_there(mesh.has_vertex_status() && mesh.status(vertex).deleted());
+    if (mesh.has_vertex_status() && mesh.status(vertex).deleted()) detail::refuse_deleted();
     const auto& p = mesh.point(vertex);
     polygons.positions.emplace_back(p[0], p[1], p[2]);
   }
   polygons.face_begin.reserve(mesh.n_faces() + 1);
   for (const auto face : mesh.all_faces()) {
-    require_there(mesh.has_face_status() && mesh.status(face).deleted());
+    if (mesh.has_face_status() && mesh.status(face).deleted()) detail::refuse_deleted();
     for (auto vertex = mesh.cfv_begin(face); vertex.is_valid(); ++vertex)
       polygons.corners.push_back(static_cast<std::uint32_t>(vertex->idx()));
     polygons.close_face();
@@ -70,9 +70,7 @@ M to_mesh(PolygonView polygons) {
   for (std::size_t f = 0; f < polygons.face_count(); ++f) {
     handles.clear();
     for (const auto v : polygons.face(f)) handles.emplace_back(static_cast<int>(v));
-    if (!mesh.add_face(handles).is_valid())
-      throw InvalidInput("mesh: expected a face that a half-edge mesh can hold, got face " + std::to_string(f) +
-                         " (non-manifold or oriented against its neighbours; use spans instead)");
+    if (!mesh.add_face(handles).is_valid()) detail::refuse_face(f);
   }
   return mesh;
 }
@@ -93,10 +91,5 @@ OffsetResult offset(M& mesh, const OffsetOptions& options) {
   }
   return result;
 }
-
-// Compiled with the library.
-extern template VDB_OFFSET_API Polygons to_polygons(const Mesh& mesh);
-extern template VDB_OFFSET_API Mesh to_mesh(PolygonView polygons);
-extern template VDB_OFFSET_API OffsetResult offset(Mesh& mesh, const OffsetOptions& options);
 
 }  // namespace vdb_offset

@@ -167,10 +167,11 @@ class GridMesher {
   }
 
   /// Goes from a point that is about on the surface to where the values, interpolated, are the isovalue: a few steps of
-  /// Newton's method along their gradient. volumeToMesh's vertices are means of crossings.
+  /// Newton's method along their gradient, within the cell of eight voxels that the point is in, so that none passes
+  /// another one. volumeToMesh's vertices are means of crossings.
   openvdb::Vec3d on_surface(const openvdb::Vec3d& from) const {
     constexpr int kSteps = 4;
-    constexpr double kFarthest = 1, kProbe = 0.25;  // voxels
+    constexpr double kProbe = 0.25;  // voxels
     const auto value = [accessor = grid_.getConstAccessor()](const openvdb::Vec3d& x) {
       return static_cast<double>(openvdb::tools::BoxSampler::sample(accessor, x));
     };
@@ -187,7 +188,7 @@ class GridMesher {
       if (!(squared > 0)) break;
       const openvdb::Vec3d next = x - gradient * (off / squared);
       const double off_there = value(next) - isovalue_;
-      if (!((next - from).length() <= kFarthest) || !(std::abs(off_there) < std::abs(off))) break;
+      if (openvdb::Coord::floor(next) != openvdb::Coord::floor(from) || !(std::abs(off_there) < std::abs(off))) break;
       x = next;
       off = off_there;
     }
