@@ -15,7 +15,7 @@ namespace {
 
 struct FloatTraits : OpenMesh::DefaultTraits {
   VertexAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::Status);
-  FaceAttributes(OpenMesh::Attributes::Color | OpenMesh::Attributes::Status);
+  FaceAttributes(OpenMesh::Attributes::Status);
 };
 using PolyDouble = Mesh;
 using PolyFloat = OpenMesh::PolyMesh_ArrayKernelT<FloatTraits>;
