@@ -103,6 +103,10 @@ TEST_CASE("vdb: the grid is the one that is named, or the only level set", "[io]
                                       Catch::Contains("(--grid NAME picks one)"));
   CHECK(signed_volume(read(both, {.grid = "large", .isovalue = {}}).polygons) > 4);
   CHECK_THROWS_WITH(read(both, {.grid = "huge", .isovalue = {}}), Catch::Contains("'huge', got level set 'small'"));
+  const auto same = sphere_grid(1, 0.1, "small");
+  const std::string twice = bytes_of({small, same});
+  CHECK_THROWS_WITH(parsed(twice), Catch::Contains("got level set 'small[0]', level set 'small[1]'"));
+  CHECK(signed_volume(read(twice, {.grid = "small[1]", .isovalue = {}}).polygons) > 4);
   CHECK_THROWS_WITH(parsed(bytes_of({numbers})), Catch::Contains("expected a level set, got grid 'numbers' of int32s"));
   CHECK_THROWS_WITH(parsed(bytes_of({})), Catch::Contains("got none"));
 }

@@ -12,6 +12,7 @@
 #include <ios>
 #include <istream>
 #include <limits>
+#include <map>
 #include <new>
 #include <optional>
 #include <streambuf>
@@ -73,6 +74,14 @@ openvdb::GridPtrVec read_grids(const MeshFile& file) {
   ByteStream bytes(file.text());
   const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(bytes.stream(), false).getGrids();
   return grids ? *grids : openvdb::GridPtrVec();
+}
+
+/// Appends an index to each name that is not the only one of its kind, as OpenVDB's tools show them.
+void number_names(openvdb::GridPtrVec& grids) {
+  std::map<std::string, std::vector<GridBase*>> of_name;
+  for (const GridBase::Ptr& grid : grids) of_name[grid->getName()].push_back(grid.get());
+  for (const auto& [name, some] : of_name)
+    for (std::size_t i = 0; some.size() > 1 && i < some.size(); ++i) some[i]->setName(fmt::format("{}[{}]", name, i));
 }
 
 std::string in_words(const GridBase& grid) {
@@ -222,7 +231,8 @@ class GridMesher {
 };
 
 void mesh(MeshFile& file, const VdbReading& how) {
-  const openvdb::GridPtrVec grids = read_grids(file);
+  openvdb::GridPtrVec grids = read_grids(file);
+  number_names(grids);
   const FloatGrid& grid = choose(file, grids, how);
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET && !how.isovalue)
     throw InvalidInput(fmt::format("{}: expected a level set, got a {} (--isovalue V takes the surface where it is V)",
