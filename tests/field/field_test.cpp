@@ -306,7 +306,7 @@ double sampled_error(const DistanceField& field, PlaceAt&& place_at, Distance&& 
   return worst;
 }
 
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kFullTurn = 6.283185307179586;
 
 }  // namespace
 
@@ -319,7 +319,7 @@ TEST_CASE("field: OpenVDB's sampler finds the distance to a sphere and a torus",
     const double worst = sampled_error(
         field,
         [&](double u, double v, double w) {
-          const double z = 2 * u - 1, around = kTwoPi * v, r = 1 + (2 * w - 1) * (reach - 2 * h);
+          const double z = 2 * u - 1, around = kFullTurn * v, r = 1 + (2 * w - 1) * (reach - 2 * h);
           return Vec3d(std::sqrt(1 - z * z) * std::cos(around), std::sqrt(1 - z * z) * std::sin(around), z) * r;
         },
         [](const Vec3d& x) { return x.length() - 1; }, [&](const Vec3d& x) { return 2 / (x.length() - 2 * h); });
@@ -333,7 +333,7 @@ TEST_CASE("field: OpenVDB's sampler finds the distance to a sphere and a torus",
     const double worst = sampled_error(
         field,
         [&](double u, double v, double w) {
-          const double across = kTwoPi * u, around = kTwoPi * v, r = small + (2 * w - 1) * (reach - 2 * h),
+          const double across = kFullTurn * u, around = kFullTurn * v, r = small + (2 * w - 1) * (reach - 2 * h),
                        from_axis = large + r * std::cos(across);
           return Vec3d(from_axis * std::cos(around), from_axis * std::sin(around), r * std::sin(across));
         },

@@ -25,15 +25,15 @@ using namespace vdb_offset;
 
 namespace {
 
-std::string bytes_of(const openvdb::GridPtrVec& grids) {
+std::string vdb_bytes(const openvdb::GridPtrVec& grids) {
   openvdb::initialize();
   std::ostringstream text;
   openvdb::io::Stream(text).write(grids);
   return text.str();
 }
 
-openvdb::FloatGrid::Ptr sphere_grid(double radius, double voxel, const std::string& name,
-                                    const Vec3d& centre = Vec3d(0.0)) {
+openvdb::FloatGrid::Ptr vdb_sphere(double radius, double voxel, const std::string& name,
+                                   const Vec3d& centre = Vec3d(0.0)) {
   openvdb::initialize();
   const auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
       static_cast<float>(radius), openvdb::Vec3f(centre), static_cast<float>(voxel));
@@ -41,17 +41,17 @@ openvdb::FloatGrid::Ptr sphere_grid(double radius, double voxel, const std::stri
   return grid;
 }
 
-io::MeshFile parsed(const std::string& bytes) { return io::parse_mesh("a.vdb", io::Format::Vdb, bytes); }
+io::MeshFile vdb_mesh(const std::string& bytes) { return io::parse_mesh("a.vdb", io::Format::Vdb, bytes); }
 
 /// Reads a file's mesh with options.
-io::MeshFile read(const std::string& bytes, const io::VdbReading& how) {
+io::MeshFile vdb_mesh_as(const std::string& bytes, const io::VdbReading& how) {
   const Folder folder;
   const std::string path = folder.file("a.vdb");
   write_file(path, bytes);
   return io::read_mesh(path, {.format = {}, .cad = {}, .vdb = how});
 }
 
-double signed_volume(const Polygons& mesh) {
+double vdb_volume(const Polygons& mesh) {
   double sum = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const auto face = mesh.view().face(f);
@@ -66,73 +66,75 @@ double signed_volume(const Polygons& mesh) {
 TEST_CASE("vdb: the zero surface of a level set is the mesh", "[io]") {
   const Vec3d centre(10, -3, 5);
   const double h = 0.05;
-  const io::MeshFile file = parsed(bytes_of({sphere_grid(1, h, "ball", centre)}));
+  const io::MeshFile file = vdb_mesh(vdb_bytes({vdb_sphere(1, h, "ball", centre)}));
   REQUIRE(file.polygons.positions.size() > 5000);
   // Interpolation is off by h^2 / 8 times the sum of both curvatures, and by the floats of the grid.
   for (const Vec3d& position : file.polygons.positions)
     CHECK(std::abs((position - centre).length() - 1) < h * h / 8 * 2 / (1 - h) + 1e-5);
-  CHECK(signed_volume(file.polygons) == Approx(4.18879).epsilon(0.005));
+  CHECK(vdb_volume(file.polygons) == Approx(4.18879).epsilon(0.005));
   CHECK(build_surface(file.polygons.view(), {}).facts.closed());
   CHECK(file.voxel_size == Approx(h));
   CHECK(file.format == io::Format::Vdb);
 }
 
 TEST_CASE("vdb: faces point outward of whatever grid and transform", "[io]") {
-  const openvdb::FloatGrid::Ptr grid = sphere_grid(1, 0.1, "ball");
+  const openvdb::FloatGrid::Ptr grid = vdb_sphere(1, 0.1, "ball");
   const auto fog = grid->deepCopy();
   openvdb::tools::sdfToFogVolume(*fog);
   fog->setName("smoke");
-  const std::string of_fog = bytes_of({fog});
-  CHECK_THROWS_WITH(parsed(of_fog), Catch::Contains("expected a level set, got a fog volume 'smoke' (--isovalue V"));
-  const io::MeshFile middle = read(of_fog, {.grid = {}, .isovalue = 0.5});
+  const std::string of_fog = vdb_bytes({fog});
+  CHECK_THROWS_WITH(vdb_mesh(of_fog), Catch::Contains("expected a level set, got a fog volume 'smoke' (--isovalue V"));
+  const io::MeshFile middle = vdb_mesh_as(of_fog, {.grid = {}, .isovalue = 0.5});
   // Fog is 0 at the surface, and 1 three voxels inside.
-  CHECK(signed_volume(middle.polygons) == Approx(4.18879 * std::pow(1 - 0.15, 3)).epsilon(0.03));
-  CHECK(signed_volume(read(bytes_of({grid}), {.grid = {}, .isovalue = 0.1}).polygons) ==
+  CHECK(vdb_volume(middle.polygons) == Approx(4.18879 * std::pow(1 - 0.15, 3)).epsilon(0.03));
+  CHECK(vdb_volume(vdb_mesh_as(vdb_bytes({grid}), {.grid = {}, .isovalue = 0.1}).polygons) ==
         Approx(4.18879 * std::pow(1.1, 3)).epsilon(0.02));
   grid->transform().postScale(Vec3d(-1, 2, 1));
-  CHECK(signed_volume(parsed(bytes_of({grid})).polygons) == Approx(2 * 4.18879).epsilon(0.02));
+  CHECK(vdb_volume(vdb_mesh(vdb_bytes({grid})).polygons) == Approx(2 * 4.18879).epsilon(0.02));
 }
 
 TEST_CASE("vdb: the grid is the one that is named, or the only level set", "[io]") {
-  const auto small = sphere_grid(0.5, 0.1, "small"), large = sphere_grid(1, 0.1, "large");
+  const auto small = vdb_sphere(0.5, 0.1, "small"), large = vdb_sphere(1, 0.1, "large");
   const auto numbers = openvdb::Int32Grid::create(0);
   numbers->setName("numbers");
-  CHECK(signed_volume(parsed(bytes_of({numbers, large})).polygons) > 4);
-  const std::string both = bytes_of({small, large, numbers});
-  CHECK_THROWS_WITH(parsed(both), Catch::Contains("expected a level set, got level set 'small', level set 'large'") &&
-                                      Catch::Contains("(--grid NAME picks one)"));
-  CHECK(signed_volume(read(both, {.grid = "large", .isovalue = {}}).polygons) > 4);
-  CHECK_THROWS_WITH(read(both, {.grid = "huge", .isovalue = {}}), Catch::Contains("'huge', got level set 'small'"));
-  const auto same = sphere_grid(1, 0.1, "small");
-  const std::string twice = bytes_of({small, same});
-  CHECK_THROWS_WITH(parsed(twice), Catch::Contains("got level set 'small[0]', level set 'small[1]'"));
-  CHECK(signed_volume(read(twice, {.grid = "small[1]", .isovalue = {}}).polygons) > 4);
-  CHECK_THROWS_WITH(parsed(bytes_of({numbers})), Catch::Contains("expected a level set, got grid 'numbers' of int32s"));
-  CHECK_THROWS_WITH(parsed(bytes_of({})), Catch::Contains("got none"));
+  CHECK(vdb_volume(vdb_mesh(vdb_bytes({numbers, large})).polygons) > 4);
+  const std::string both = vdb_bytes({small, large, numbers});
+  CHECK_THROWS_WITH(vdb_mesh(both), Catch::Contains("expected a level set, got level set 'small', level set 'large'") &&
+                                        Catch::Contains("(--grid NAME picks one)"));
+  CHECK(vdb_volume(vdb_mesh_as(both, {.grid = "large", .isovalue = {}}).polygons) > 4);
+  CHECK_THROWS_WITH(vdb_mesh_as(both, {.grid = "huge", .isovalue = {}}),
+                    Catch::Contains("'huge', got level set 'small'"));
+  const auto same = vdb_sphere(1, 0.1, "small");
+  const std::string twice = vdb_bytes({small, same});
+  CHECK_THROWS_WITH(vdb_mesh(twice), Catch::Contains("got level set 'small[0]', level set 'small[1]'"));
+  CHECK(vdb_volume(vdb_mesh_as(twice, {.grid = "small[1]", .isovalue = {}}).polygons) > 4);
+  CHECK_THROWS_WITH(vdb_mesh(vdb_bytes({numbers})),
+                    Catch::Contains("expected a level set, got grid 'numbers' of int32s"));
+  CHECK_THROWS_WITH(vdb_mesh(vdb_bytes({})), Catch::Contains("got none"));
 }
 
 TEST_CASE("vdb: grids without a surface, and with numbers that are none, are refused", "[io]") {
-  const auto grid = sphere_grid(1, 0.1, "ball");
-  CHECK_THROWS_WITH(read(bytes_of({grid}), {.grid = {}, .isovalue = 7.0}),
+  const auto grid = vdb_sphere(1, 0.1, "ball");
+  CHECK_THROWS_WITH(vdb_mesh_as(vdb_bytes({grid}), {.grid = {}, .isovalue = 7.0}),
                     Catch::Contains("expected a surface where the level set 'ball' is 7, got values from -0.29"));
   grid->tree().setValue(openvdb::Coord(10, 0, 0), std::nanf(""));
-  CHECK_THROWS_WITH(parsed(bytes_of({grid})), Catch::Contains("expected finite numbers"));
+  CHECK_THROWS_WITH(vdb_mesh(vdb_bytes({grid})), Catch::Contains("expected finite numbers"));
   // A tile whose sides would be a hundred million faces.
   const auto huge = openvdb::FloatGrid::create(1);
   huge->setGridClass(openvdb::GRID_LEVEL_SET);
   huge->tree().addTile(3, openvdb::Coord(0), -1, true);
   const auto limit = [](std::size_t bytes) { set_memory_limit(bytes); };
   limit(std::size_t{2} << 30);
-  CHECK_THROWS_AS(parsed(bytes_of({huge})), OutOfBudget);
+  CHECK_THROWS_AS(vdb_mesh(vdb_bytes({huge})), OutOfBudget);
   limit(0);
 }
 
 TEST_CASE("vdb: broken files are refused in one line, or read", "[io]") {
-  const std::string bytes = bytes_of({sphere_grid(0.5, 0.1, "ball")});
+  const std::string bytes = vdb_bytes({vdb_sphere(0.5, 0.1, "ball")});
   std::mt19937 random(3);
   const auto read_or_refused = [](const std::string& some) {
     try {
-      parsed(some);
+      vdb_mesh(some);
     } catch (const InvalidInput& error) {
       CHECK_THAT(error.what(), !Catch::Contains("\n"));
     } catch (const OutOfBudget&) {

@@ -23,14 +23,14 @@ using TriDouble = OpenMesh::TriMesh_ArrayKernelT<MeshTraits>;
 using TriFloat = OpenMesh::TriMesh_ArrayKernelT<FloatTraits>;
 
 template <class M>
-Vec3d at(const M& mesh, typename M::VertexHandle v) {
+Vec3d point_of(const M& mesh, typename M::VertexHandle v) {
   const auto& p = mesh.point(v);
   return Vec3d(p[0], p[1], p[2]);
 }
 
 /// What rounding to a mesh's scalars may do to coordinates near 1.
 template <class M>
-constexpr double kRounding = std::is_same_v<typename M::Scalar, float> ? 2e-7 : 1e-12;
+constexpr double kPointRounding = std::is_same_v<typename M::Scalar, float> ? 2e-7 : 1e-12;
 
 }  // namespace
 
@@ -53,8 +53,8 @@ TEMPLATE_TEST_CASE("OpenMesh: vertices of a sphere go to another one, and nothin
   for (const auto v : mesh.vertices()) {
     const auto i = static_cast<std::size_t>(v.idx());
     // The closest point of a vertex's own position is a vertex, and its faces hang a little below the sphere.
-    CHECK((at(mesh, v) - sphere.positions[i] * (1 + distance)).length() < 0.001);
-    CHECK((at(mesh, v) - result.positions[i]).length() <= kRounding<TestType>);
+    CHECK((point_of(mesh, v) - sphere.positions[i] * (1 + distance)).length() < 0.001);
+    CHECK((point_of(mesh, v) - result.positions[i]).length() <= kPointRounding<TestType>);
     CHECK(mesh.property(number, v) == 3 * v.idx());
     CHECK(mesh.normal(v)[2] == 1);
   }
@@ -74,12 +74,12 @@ TEMPLATE_TEST_CASE("OpenMesh: corners of a cube go along its diagonals", "[offse
   offset(mesh, {.distance = 0.1});
   for (const auto v : mesh.vertices())
     for (int k = 0; k < 3; ++k)
-      CHECK(std::abs(at(mesh, v)[k]) == Approx(0.5 + 0.1 / std::sqrt(3.0)).margin(kRounding<TestType>));
+      CHECK(std::abs(point_of(mesh, v)[k]) == Approx(0.5 + 0.1 / std::sqrt(3.0)).margin(kPointRounding<TestType>));
   // By miters, each of its planes is at the distance.
   mesh = to_mesh<TestType>(cube.view());
   offset(mesh, {.distance = 0.1, .corners = Corners::Miter});
   for (const auto v : mesh.vertices())
-    for (int k = 0; k < 3; ++k) CHECK(std::abs(at(mesh, v)[k]) == Approx(0.6).margin(kRounding<TestType>));
+    for (int k = 0; k < 3; ++k) CHECK(std::abs(point_of(mesh, v)[k]) == Approx(0.6).margin(kPointRounding<TestType>));
 }
 
 TEST_CASE("OpenMesh: deleted elements are refused until they are gone", "[offset]") {

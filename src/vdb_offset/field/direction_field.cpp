@@ -63,7 +63,7 @@ DirectionField make_directions(const DistanceField& field, bool open_surface) {
   const openvdb::FloatTree& phi = field.phi->tree();
   const auto h = static_cast<float>(field.voxel_size);
   DirectionField directions;
-  directions.gradient = openvdb::Vec3SGrid::create(
+  directions.gradient = std::make_shared<openvdb::Vec3SGrid>(
       std::make_shared<openvdb::Vec3STree>(phi, openvdb::Vec3s(0.0f), openvdb::TopologyCopy()));
   directions.gradient->setName("direction");
   directions.gradient->setVectorType(openvdb::VEC_COVARIANT);
