@@ -5,15 +5,19 @@
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <openvdb/tools/LevelSetUtil.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <new>
 #include <random>
 #include <sstream>
 
 #include "support/folder.h"
 #include "vdb_offset/error.h"
+#include "vdb_offset/io/documents/trial.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/level_set.h"
 #include "vdb_offset/output_files.h"
@@ -146,6 +150,15 @@ TEST_CASE("vdb: broken files are refused in one line, or read", "[io]") {
     for (int k = 0; k < 3; ++k) other[random() % (i % 2 ? 2000 : other.size())] ^= static_cast<char>(1 << random() % 8);
     read_or_refused(other);
   }
+}
+
+TEST_CASE("vdb: a reader that ends the process ends its trial", "[io]") {
+  const auto tried = [](const std::function<void()>& work) { io::try_in_child("a.vdb", std::size_t{1} << 30, work); };
+  tried([] {});
+  tried([] { throw InvalidInput("will be thrown again"); });
+  CHECK_THROWS_WITH(tried([] { ::_exit(7); }), Catch::Contains("a.vdb: expected a file that its library can read") &&
+                                                   Catch::Contains("ends it with code 7"));
+  CHECK_THROWS_AS(tried([] { throw std::bad_alloc(); }), OutOfBudget);
 }
 
 TEST_CASE("vdb: a level set of a mesh is its distance", "[io]") {

@@ -88,6 +88,9 @@ void try_in_child(const std::string& path, std::size_t most_memory, const std::f
                                        : fmt::format("ends it by signal {}", WTERMSIG(status))));
   if (WEXITSTATUS(status) == kTooLarge)
     throw OutOfBudget(path + ": expected a file whose content fits into memory, got one that asks for more");
+  if (WEXITSTATUS(status) != kDone)
+    throw InvalidInput(fmt::format("{}: expected a file that its library can read, got one that ends it with code {}",
+                                   path, WEXITSTATUS(status)));
 }
 
 }  // namespace vdb_offset::io
