@@ -20,7 +20,7 @@ namespace {
 
 // A reader takes seconds for the largest files that are met; this ends one that never comes to an end.
 constexpr unsigned kMostSeconds = 300;
-constexpr int kDone = 0, kTooLarge = 1;
+constexpr int kDone = 0, kTooLarge = 1, kThrown = 2;
 
 /// Bytes of addresses that this process has now; 0 if the system does not say.
 [[maybe_unused]] std::size_t addresses() {
@@ -61,14 +61,14 @@ void set_limit(int what, rlim_t most) {
   } catch (const std::length_error&) {
     ::_exit(kTooLarge);
   } catch (...) {
-    ::_exit(kDone);  // will be thrown again where it can be told
+    ::_exit(kThrown);
   }
   ::_exit(kDone);
 }
 
 }  // namespace
 
-void try_in_child(const std::string& path, std::size_t most_memory, const std::function<void()>& work) {
+bool try_in_child(const std::string& path, std::size_t most_memory, const std::function<void()>& work) {
   // Where children's ends are ignored, the system keeps none of them, as it would not for this one.
   struct sigaction kept {
   }, by_default{};
@@ -88,9 +88,10 @@ void try_in_child(const std::string& path, std::size_t most_memory, const std::f
                                        : fmt::format("ends it by signal {}", WTERMSIG(status))));
   if (WEXITSTATUS(status) == kTooLarge)
     throw OutOfBudget(path + ": expected a file whose content fits into memory, got one that asks for more");
-  if (WEXITSTATUS(status) != kDone)
+  if (WEXITSTATUS(status) != kDone && WEXITSTATUS(status) != kThrown)
     throw InvalidInput(fmt::format("{}: expected a file that its library can read, got one that ends it with code {}",
                                    path, WEXITSTATUS(status)));
+  return WEXITSTATUS(status) == kDone;
 }
 
 }  // namespace vdb_offset::io

@@ -247,15 +247,16 @@ void parse_vdb(MeshFile& file, const VdbReading& how) {
   // Most memory that reading may take: blocks of zeros are packed a thousandfold. Enough for small files.
   constexpr std::size_t kMostPerByte = 1000, kAtLeast = std::size_t{1} << 30, kMost = std::size_t{1} << 36;
   require_memory(2 * file.text().size(), file.path);
-  // OpenVDB trusts what it reads. It reads without oneTBB, whose threads a child has not.
-  try_in_child(file.path, std::min(kMostPerByte * file.text().size() + kAtLeast, kMost), [&] { read_grids(file); });
+  // OpenVDB trusts what it reads, and loses memory where that ends too soon. It reads without oneTBB, whose threads a
+  // child has not.
+  if (!try_in_child(file.path, std::min(kMostPerByte * file.text().size() + kAtLeast, kMost),
+                    [&] { read_grids(file); }))
+    throw InvalidInput(file.path +
+                       ": expected a file that OpenVDB reads, got one that is cut short, or none of OpenVDB's");
   try {
     mesh(file, how);
   } catch (const openvdb::Exception& error) {
     throw InvalidInput(fmt::format("{}: expected a file that OpenVDB reads, got: {}", file.path, error.what()));
-  } catch (const std::ios_base::failure&) {
-    throw InvalidInput(fmt::format("{}, byte {}: expected the rest of a grid, got the end of the file", file.path,
-                                   file.text().size()));
   } catch (const std::bad_alloc&) {
     throw OutOfBudget(file.path + ": expected grids that fit into memory, got more");
   }
