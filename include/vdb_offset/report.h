@@ -26,6 +26,12 @@ VDB_OFFSET_API AchievedSummary summarise(std::span<const VertexState> states, st
                                          const Distances& distances);
 VDB_OFFSET_API AchievedSummary summarise(const OffsetResult& result);
 
+/// A level set that was written of an iso-surface.
+struct LevelSetFacts {
+  std::size_t active_voxels = 0;
+  double voxel_size = 0;  ///< World units.
+};
+
 /// What a report adds to a result: what was asked for, and where.
 struct RunFacts {
   std::string input, output;
@@ -35,6 +41,7 @@ struct RunFacts {
   std::optional<CadFileFacts> cad;             ///< If a CAD model was written.
   std::optional<IsoStatistics> inner_surface;  ///< If a hollow solid was written that has two captured skins.
   std::optional<LayerReport> layers;           ///< If layers were written.
+  std::optional<LevelSetFacts> level_set;      ///< If a level set was written, in place of the surface's mesh.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
 };
 

@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "support/folder.h"
+#include "support/oracles.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/documents/trial.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -55,16 +56,6 @@ io::MeshFile vdb_mesh_as(const std::string& bytes, const io::VdbReading& how) {
   return io::read_mesh(path, {.format = {}, .cad = {}, .vdb = how});
 }
 
-double vdb_volume(const Polygons& mesh) {
-  double sum = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.view().face(f);
-    for (std::size_t k = 2; k < face.size(); ++k)
-      sum += mesh.positions[face[0]].dot(mesh.positions[face[k - 1]].cross(mesh.positions[face[k]])) / 6;
-  }
-  return sum;
-}
-
 }  // namespace
 
 TEST_CASE("vdb: the zero surface of a level set is the mesh", "[io]") {
@@ -75,7 +66,7 @@ TEST_CASE("vdb: the zero surface of a level set is the mesh", "[io]") {
   // Interpolation is off by h^2 / 8 times the sum of both curvatures, and by the floats of the grid.
   for (const Vec3d& position : file.polygons.positions)
     CHECK(std::abs((position - centre).length() - 1) < h * h / 8 * 2 / (1 - h) + 1e-5);
-  CHECK(vdb_volume(file.polygons) == Approx(4.18879).epsilon(0.005));
+  CHECK(test::enclosed_volume(file.polygons) == Approx(4.18879).epsilon(0.005));
   CHECK(build_surface(file.polygons.view(), {}).facts.closed());
   CHECK(file.voxel_size == Approx(h));
   CHECK(file.format == io::Format::Vdb);
@@ -90,28 +81,28 @@ TEST_CASE("vdb: faces point outward of whatever grid and transform", "[io]") {
   CHECK_THROWS_WITH(vdb_mesh(of_fog), Catch::Contains("expected a level set, got a fog volume 'smoke' (--isovalue V"));
   const io::MeshFile middle = vdb_mesh_as(of_fog, {.grid = {}, .isovalue = 0.5});
   // Fog is 0 at the surface, and 1 three voxels inside.
-  CHECK(vdb_volume(middle.polygons) == Approx(4.18879 * std::pow(1 - 0.15, 3)).epsilon(0.03));
-  CHECK(vdb_volume(vdb_mesh_as(vdb_bytes({grid}), {.grid = {}, .isovalue = 0.1}).polygons) ==
+  CHECK(test::enclosed_volume(middle.polygons) == Approx(4.18879 * std::pow(1 - 0.15, 3)).epsilon(0.03));
+  CHECK(test::enclosed_volume(vdb_mesh_as(vdb_bytes({grid}), {.grid = {}, .isovalue = 0.1}).polygons) ==
         Approx(4.18879 * std::pow(1.1, 3)).epsilon(0.02));
   grid->transform().postScale(Vec3d(-1, 2, 1));
-  CHECK(vdb_volume(vdb_mesh(vdb_bytes({grid})).polygons) == Approx(2 * 4.18879).epsilon(0.02));
+  CHECK(test::enclosed_volume(vdb_mesh(vdb_bytes({grid})).polygons) == Approx(2 * 4.18879).epsilon(0.02));
 }
 
 TEST_CASE("vdb: the grid is the one that is named, or the only level set", "[io]") {
   const auto small = vdb_sphere(0.5, 0.1, "small"), large = vdb_sphere(1, 0.1, "large");
   const auto numbers = openvdb::Int32Grid::create(0);
   numbers->setName("numbers");
-  CHECK(vdb_volume(vdb_mesh(vdb_bytes({numbers, large})).polygons) > 4);
+  CHECK(test::enclosed_volume(vdb_mesh(vdb_bytes({numbers, large})).polygons) > 4);
   const std::string both = vdb_bytes({small, large, numbers});
   CHECK_THROWS_WITH(vdb_mesh(both), Catch::Contains("expected a level set, got level set 'small', level set 'large'") &&
                                         Catch::Contains("(--grid NAME picks one)"));
-  CHECK(vdb_volume(vdb_mesh_as(both, {.grid = "large", .isovalue = {}}).polygons) > 4);
+  CHECK(test::enclosed_volume(vdb_mesh_as(both, {.grid = "large", .isovalue = {}}).polygons) > 4);
   CHECK_THROWS_WITH(vdb_mesh_as(both, {.grid = "huge", .isovalue = {}}),
                     Catch::Contains("'huge', got level set 'small'"));
   const auto same = vdb_sphere(1, 0.1, "small");
   const std::string twice = vdb_bytes({small, same});
   CHECK_THROWS_WITH(vdb_mesh(twice), Catch::Contains("got level set 'small[0]', level set 'small[1]'"));
-  CHECK(vdb_volume(vdb_mesh_as(twice, {.grid = "small[1]", .isovalue = {}}).polygons) > 4);
+  CHECK(test::enclosed_volume(vdb_mesh_as(twice, {.grid = "small[1]", .isovalue = {}}).polygons) > 4);
   CHECK_THROWS_WITH(vdb_mesh(vdb_bytes({numbers})),
                     Catch::Contains("expected a level set, got grid 'numbers' of int32s"));
   CHECK_THROWS_WITH(vdb_mesh(vdb_bytes({})), Catch::Contains("got none"));
@@ -180,5 +171,6 @@ TEST_CASE("vdb: a level set of a mesh is its distance", "[io]") {
   const io::MeshFile file = io::read_mesh(folder.file("ball.vdb"));
   for (const Vec3d& position : file.polygons.positions) CHECK(std::abs(position.length() - 1) < 7e-4);
   CHECK_THROWS_AS(make_level_set(scene::icosphere(1, 2).view(), 1e-6), InvalidInput);
+  CHECK_THROWS_AS(make_level_set(scene::hemisphere(1, 16, 8).view(), 0.1), InvalidInput);
   CHECK_THROWS_AS(save_grid(grid, folder.file("no/ball.vdb")), WriteError);
 }

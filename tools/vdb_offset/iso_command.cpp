@@ -80,26 +80,31 @@ io::Transported read_attributes_of(const Job& job) {
   return {};
 }
 
-/// The surface as a level set, on voxels as large as is asked for, or as those of the source.
-void write_level_set(const Job& job, const Destination& to, const IsoResult& result) {
+/// Writes the surface as a level set, on voxels as large as is asked for, or as those of the source.
+LevelSetFacts write_level_set(const Job& job, const Destination& to, const IsoResult& result) {
   const GridOptions& grid = job.options.grid;
-  const double of_source = job.source.file ? job.source.file->voxel_size : 0;
+  const double of_source = job.source.file ? job.source.file->voxel_size : 0,
+               of_surface = result.statistics.plan.voxel_size;
   const bool is_asked = grid.voxel_size || grid.voxels_per_distance;
-  save_grid(make_level_set(result.polygons.view(),
-                           is_asked || of_source == 0 ? result.statistics.plan.voxel_size : of_source),
-            to.mesh, run_metadata(job, to));
+  const openvdb::FloatGrid::Ptr phi =
+      make_level_set(result.polygons.view(), is_asked || of_source == 0 ? of_surface : of_source);
+  save_grid(phi, to.mesh, run_metadata(job, to));
+  return {phi->activeVoxelCount(), phi->voxelSize()[0]};
 }
 
-void write_iso_surface(const Job& job, const io::Transported& transported, const Destination& to, IsoResult& result,
-                       Clock::time_point start) {
+/// Returns the facts of the level set, if that is what is written.
+std::optional<LevelSetFacts> write_iso_surface(const Job& job, const io::Transported& transported,
+                                               const Destination& to, IsoResult& result, Clock::time_point start) {
   const auto writing = Clock::now();
   const io::WriteOptions options = write_options(job.request, to.mesh);
   const std::optional<io::MeshFile>& file = job.source.file;
-  if (is_level_set_output(to.mesh, job.request)) write_level_set(job, to, result);
+  std::optional<LevelSetFacts> level_set;
+  if (is_level_set_output(to.mesh, job.request)) level_set = write_level_set(job, to, result);
   else if (file) tell_losses(job.request, to.mesh, io::write_iso_surface(to.mesh, *file, transported, result, options));
   else io::write_iso_surface(to.mesh, result, options);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!to.report.empty()) write_iso_report(job, to, result, start);
+  if (!to.report.empty()) write_iso_report(job, to, result, start, {.level_set = level_set});
+  return level_set;
 }
 
 IsoResult make_valid(const Job& job, const Distances& distance, const std::string& path,
@@ -141,7 +146,7 @@ void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, I
   const io::MeshFile* const file = job.source.file ? &*job.source.file : nullptr;
   tell_losses(job.request, to.mesh, io::write_hollow(to.mesh, file, hollow, iso, options));
   iso.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!to.report.empty()) write_iso_report(job, to, iso, start, &hollow.facts, inner);
+  if (!to.report.empty()) write_iso_report(job, to, iso, start, {.shell = &hollow.facts, .inner = inner});
 }
 
 /// Whether what --strict-faces asks for is met by all surfaces.
@@ -180,19 +185,20 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   const IsoResult* const inner_skin = inner ? &*inner : nullptr;
   OutputFiles outputs(job.request.sync);
   std::optional<Hollow> hollow;  // for one distance alone
+  std::vector<std::optional<LevelSetFacts>> level_sets(destinations.size());
   for (std::size_t i = 0; i < destinations.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
     if (job.shell) hollow = hollow_of(job, job.distances[i][0], results[i], inner_skin);
     if (hollow) require_apart(*hollow, results[i].statistics);
     if (hollow) write_hollow(job, destinations[i], *hollow, results[i], inner_skin, timing.start);
-    else write_iso_surface(job, transported, destinations[i], results[i], timing.start);
+    else level_sets[i] = write_iso_surface(job, transported, destinations[i], results[i], timing.start);
   }
   outputs.commit(ignore_interrupts);
   bar.clear();
   for (std::size_t i = 0; i < destinations.size() && !job.request.quiet; ++i) {
     const double distance = job.distances[i][0], seconds = seconds_since(timing.start);
     if (hollow) print_hollow_summary(job, destinations[i].mesh, distance, *hollow, results[i], inner_skin, seconds);
-    else print_iso_summary(job, destinations[i].mesh, distance, results[i], seconds);
+    else print_iso_summary(job, destinations[i].mesh, distance, results[i], seconds, level_sets[i]);
   }
   return are_faces_there(job, results, inner_skin) ? kDone : kProcessing;
 }

@@ -242,10 +242,11 @@ std::string layers_report(const Job& job, const LayersResult& result, const Laye
 }
 
 void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,
-                      const ShellFacts* shell, const IsoResult* inner) {
+                      const IsoProducts& made) {
   RunFacts facts = facts_of(job, to, start);
-  if (shell) facts.shell = *shell;
-  if (inner) facts.inner_surface = inner->statistics;
+  if (made.shell) facts.shell = *made.shell;
+  if (made.inner) facts.inner_surface = made.inner->statistics;
+  facts.level_set = made.level_set;
   write_file(to.report, report_json(result.statistics, facts));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/layer_cells.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/report.h"
 #include "vdb_offset/shell.h"
 
 namespace vdb_offset::tool {
@@ -61,9 +63,16 @@ std::string layers_report(const Job& job, const LayersResult& result, const Laye
 /// What grids that are written say of the run.
 std::vector<std::pair<std::string, std::string>> run_metadata(const Job& job, const Destination& to);
 
+/// What an iso-surface has become, if it is not written as a mesh of its own.
+struct IsoProducts {
+  const ShellFacts* shell = nullptr;
+  const IsoResult* inner = nullptr;
+  std::optional<LevelSetFacts> level_set{};
+};
+
 /// The report of a run with --mode iso, to where it goes.
 void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,
-                      const ShellFacts* shell = nullptr, const IsoResult* inner = nullptr);
+                      const IsoProducts& made);
 
 /// Writes report, states and mesh or shell. The mesh comes last: should anything else fail, its place holds what it
 /// held before. Returns the facts of a shell, if it is one.

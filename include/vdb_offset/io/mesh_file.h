@@ -93,7 +93,7 @@ struct CadReading {
 /// Which surface of an OpenVDB file becomes a mesh.
 struct VdbReading {
   std::string grid;                ///< Its name; empty: the only level set, or the only grid of floats.
-  std::optional<double> isovalue;  ///< 0 of a level set, if it is not told; has to be told for other grids.
+  std::optional<double> isovalue;  ///< 0 if there is none; needed where the grid is no level set.
 };
 
 struct ReadOptions {

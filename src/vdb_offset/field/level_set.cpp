@@ -13,13 +13,14 @@
 namespace vdb_offset {
 
 openvdb::FloatGrid::Ptr make_level_set(PolygonView mesh, double voxel_size) {
-  if (mesh.face_count() == 0) throw InvalidInput("level set: expected a mesh of at least one face, got none");
   if (!can_hold(voxel_size))
     throw InvalidInput(
         fmt::format("level set: expected a voxel size above 1.5e-5, which OpenVDB's transforms need, got {:.6g} "
                     "(scale the model up)",
                     voxel_size));
   Surface surface = build_surface(mesh, {});
+  if (!surface.facts.closed())
+    throw InvalidInput("level set: expected a closed mesh, which has an inside, got another one");
   to_local_frame(surface, voxel_size);
   const double band = openvdb::LEVEL_SET_HALF_WIDTH * voxel_size;
   // Both grids of the band, and the triangles of each leaf node.

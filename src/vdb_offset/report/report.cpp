@@ -379,6 +379,8 @@ std::string report_json(const IsoStatistics& statistics, const RunFacts& run) {
                  {"surface", surface_json(statistics)}};
   if (run.shell) report["shell"] = shell_json(*run.shell);
   if (run.inner_surface) report["inner_surface"] = surface_json(*run.inner_surface);
+  if (run.level_set)
+    report["level_set"] = {{"active_voxels", run.level_set->active_voxels}, {"voxel_size", run.level_set->voxel_size}};
   return as_text(report);
 }
 

@@ -255,8 +255,7 @@ void complete_part_distances(Request& request) {
 void declare_level_set(CommandLine& line, Request& request) {
   line.option("--grid", "NAME", "Of .vdb files: the grid whose surface is the mesh [the only level set]",
               request.level_set.grid);
-  line.option("--isovalue", "V",
-              "Of .vdb files: the value on that surface [0 of a level set; to be told for a fog volume]",
+  line.option("--isovalue", "V", "Of .vdb files: the value on that surface; needed where the grid is no level set [0]",
               [&request](const std::string& text) {
                 request.level_set.isovalue = parse_number("--isovalue", text, "a number", -kAny, kAny);
               });

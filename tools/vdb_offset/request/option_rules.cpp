@@ -104,6 +104,8 @@ void require_for_mesh(const Request& request) {
           request.output + ": expected --collision limit or cut for a CAD model, got merge");
   require(!request.cuts || request.obstacles.empty(), "--collision cut excludes --obstacle");
   const bool is_vdb = is_level_set_output(request.output, request);
+  require(!is_vdb || io::format_of(request.output + ".gz") == io::Format::Vdb,
+          request.output + ": expected .vdb alone, as OpenVDB packs its grids itself");
   require(!is_vdb || (request.iso && !request.shell),
           request.output + ": expected --mode iso, without --shell, as a level set is written of that surface alone");
   const bool from_vdb = format_of(request.input, request) == io::Format::Vdb;

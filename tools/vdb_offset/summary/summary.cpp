@@ -287,7 +287,7 @@ void print_hollow_summary(const Job& job, const std::string& path, double distan
 }
 
 void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
-                       double total_seconds) {
+                       double total_seconds, const std::optional<LevelSetFacts>& level_set) {
   const Printout out(output_is_taken(job.request));
   const IsoStatistics& found = result.statistics;
   const MeshFaults& left = found.mending.left;
@@ -296,10 +296,13 @@ void print_iso_summary(const Job& job, const std::string& path, double distance,
     for (const Stage stage : kIsoStages)
       fmt::print(out, "{:<10} {:.3f} s\n", name(stage), found.seconds[static_cast<std::size_t>(stage)]);
   }
-  fmt::print(out, "{}: {} vertices and {} triangles at {:.6g}: {} component{}, {}, {}, {} crossing{}", path,
-             found.vertices, found.triangles, distance, found.components, found.components == 1 ? "" : "s",
-             found.closed() ? "closed" : "not closed", found.manifold() ? "manifold" : "not manifold", left.crossings,
-             left.crossings == 1 ? "" : "s");
+  if (level_set)
+    fmt::print(out, "{}: level set of {} active voxels of {:.6g}, made of this surface\n", path,
+               level_set->active_voxels, level_set->voxel_size);
+  fmt::print(out, "{}: {} vertices and {} triangles at {:.6g}: {} component{}, {}, {}, {} crossing{}",
+             level_set ? "surface" : path, found.vertices, found.triangles, distance, found.components,
+             found.components == 1 ? "" : "s", found.closed() ? "closed" : "not closed",
+             found.manifold() ? "manifold" : "not manifold", left.crossings, left.crossings == 1 ? "" : "s");
   if (left.needles > 0) fmt::print(out, ", {} triangles without area", left.needles);
   fmt::print(out, ", distance off by {:.2g} at most", found.worst_error);
   print_faces(out, found.faces, false);

@@ -73,7 +73,7 @@ void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double d
 
 /// What is printed of a iso-surface.
 void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
-                       double total_seconds);
+                       double total_seconds, const std::optional<LevelSetFacts>& level_set = {});
 
 /// What is printed of a hollow solid; `inner` is its inner skin if that was made beside the outer one.
 void print_hollow_summary(const Job& job, const std::string& path, double distance, const Hollow& hollow,
