@@ -2,10 +2,10 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -26,7 +26,10 @@ struct SurfacePlace {
   std::array<double, 3> share;          ///< As in VertexOrigin.
 
   bool on_edge() const { return vertex[2] == kNone; }
-  auto operator<=>(const SurfacePlace&) const = default;
+  bool operator==(const SurfacePlace&) const = default;
+  bool operator<(const SurfacePlace& other) const {
+    return std::tie(triangle, vertex, share) < std::tie(other.triangle, other.vertex, other.share);
+  }
 };
 
 /// The triangles of a surface, split at the middles of edges, so that they still meet edge to edge. Its vertices come
