@@ -57,6 +57,6 @@ TEST_CASE("command: where a level set has no place, one line says so", "[command
   check_failure(shell, "sphere.obj a.vdb -d 0.1 --mode iso --shell", 1, "without --shell");
   check_failure(shell, "sphere.obj a.vdb.gz -d 0.1 --mode iso", 1, "a.vdb.gz: expected .vdb alone");
   check_failure(shell, "sphere.obj a.vdb -d 0.1 --mode iso --transport color", 1, "--transport: expected a mesh");
-  check_failure(shell, "sphere.obj a.obj -d 0.1 --grid phi", 1, "expected an input that ends in .vdb");
-  check_failure(shell, "sphere.obj a.obj -d 0.1 --isovalue 1", 1, "expected an input that ends in .vdb");
+  check_failure(shell, "sphere.obj a.obj -d 0.1 --grid phi", 1, "that ends in .vdb");
+  check_failure(shell, "sphere.obj a.obj -d 0.1 --isovalue 1", 1, "that ends in .vdb");
 }

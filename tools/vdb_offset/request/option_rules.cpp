@@ -108,9 +108,10 @@ void require_for_mesh(const Request& request) {
           request.output + ": expected .vdb alone, as OpenVDB packs its grids itself");
   require(!is_vdb || (request.iso && !request.shell),
           request.output + ": expected --mode iso, without --shell, as a level set is written of that surface alone");
-  const bool from_vdb = format_of(request.input, request) == io::Format::Vdb;
-  require(from_vdb || (request.level_set.grid.empty() && !request.level_set.isovalue),
-          "--grid and --isovalue: expected an input that ends in .vdb");
+  const auto is_from_vdb = [&](const std::string& path) { return format_of(path, request) == io::Format::Vdb; };
+  require(is_from_vdb(request.input) || is_from_vdb(request.fit) || std::ranges::any_of(request.obstacles, is_from_vdb) ||
+              (request.level_set.grid.empty() && !request.level_set.isovalue),
+          "--grid and --isovalue: expected an input, an obstacle or a --fit that ends in .vdb");
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
 }
