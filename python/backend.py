@@ -39,8 +39,8 @@ def _build(folder):
     """Builds and installs the package below a folder, as vdb_offset/."""
     build = os.environ.get("VDB_OFFSET_WHEEL_BUILD") or os.path.join(folder, "build")
     subprocess.run(["cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON",
-                    "-DVDB_OFFSET_PYTHON=ON", "-DVDB_OFFSET_TOOLS=OFF", "-DVDB_OFFSET_TESTS=OFF", "-DVDB_OFFSET_VTK=OFF",
-                    "-DVDB_OFFSET_CGNS=OFF", "-DVDB_OFFSET_ASSIMP=OFF", "-DVDB_OFFSET_CAD=OFF", "-DVDB_OFFSET_HTML=OFF", "-DVDB_OFFSET_OPENMESH=OFF", f"-DPython3_EXECUTABLE={sys.executable}",
+                    "-DVDB_OFFSET_PYTHON=ON", "-DVDB_OFFSET_FILES=OFF", "-DVDB_OFFSET_TESTS=OFF",
+                    f"-DPython3_EXECUTABLE={sys.executable}",
                     "-DVDB_OFFSET_PYTHON_DIR=."], check=True, stdout=sys.stderr)
     subprocess.run(["cmake", "--build", build, "--target", "vdb_offset_python"], check=True, stdout=sys.stderr)
     subprocess.run(["cmake", "--install", build, "--component", "python", "--strip", "--prefix",

@@ -7,9 +7,9 @@
 
 #include "keywords.h"
 #include "vdb_offset/curves.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh_facts.h"
-#include "vdb_offset/scene.h"
 
 namespace vdb_offset::python {
 namespace {
@@ -25,7 +25,7 @@ Distances distances_of_text(const std::string& text, const Source& source, const
     throw InvalidInput(what + ": expected an expression without u and v, as " +
                        (source.curves() ? "curves have no texture coordinates" : "no texture was given"));
   };
-  return scene::distances_of(scene::parse_distance_or_expression(text), mesh, normals, texture);
+  return distances_of(parse_distance_or_expression(text), mesh, normals, texture);
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ Distances inward_distances_of(const py::object& inner, const Source& source, con
 
 std::pair<double, double> tolerance_of(const py::object& tolerance) {
   try {
-    const scene::Distance asked = scene::parse_distance(py::str(tolerance).cast<std::string>());
+    const GivenDistance asked = parse_distance(py::str(tolerance).cast<std::string>());
     if (asked.value > 0) return asked.percent ? std::pair(asked.value / 100, 0.0) : std::pair(0.0, asked.value);
   } catch (const InvalidInput&) {  // no number
   }
@@ -84,11 +84,11 @@ std::pair<double, double> tolerance_of(const py::object& tolerance) {
                       Keywords::text_of(tolerance));
 }
 
-std::optional<scene::Distance> length_of(const py::object& given) {
-  scene::Distance length;
+std::optional<GivenDistance> length_of(const py::object& given) {
+  GivenDistance length;
   if (py::isinstance<py::str>(given)) {
     try {
-      return scene::parse_distance(given.cast<std::string>());
+      return parse_distance(given.cast<std::string>());
     } catch (const InvalidInput&) {
       return std::nullopt;
     }
@@ -118,7 +118,7 @@ void require_alone(const py::list& distances, const Source& source, const AskedO
     throw InvalidOption("distance_z and precision exclude each other for curves");
 }
 
-scene::Distance length_by_axis(const py::object& given, const char* name) {
+GivenDistance length_by_axis(const py::object& given, const char* name) {
   if (const auto length = length_of(given)) return *length;
   throw InvalidOption(std::string(name) + ": expected a number of world units, or a text with one or percent, as " +
                       "distances by axis are, got " + Keywords::text_of(given));
@@ -132,11 +132,11 @@ std::optional<ByAxis> by_axis(const py::dict& keywords, const py::list& distance
   if (along.is_none()) return std::nullopt;
   require_alone(distances, source, asked);
   const py::object across = distances[0];
-  scene::Distance xy = length_by_axis(across, "distance"), z = length_by_axis(along, "distance_z");
+  GivenDistance xy = length_by_axis(across, "distance"), z = length_by_axis(along, "distance_z");
   if (xy.value == 0 && z.value == 0)
     throw InvalidOption("distance_z: expected one other than 0, as the distance beside it is, got " +
                         Keywords::text_of(along));
-  const auto least_beside = [](scene::Distance other) {
+  const auto least_beside = [](GivenDistance other) {
     other.value /= kMostRatio;
     return other;
   };

@@ -10,7 +10,7 @@
 #include "arrays.h"
 #include "option_values.h"
 #include "source.h"
-#include "vdb_offset/scene.h"
+#include "vdb_offset/distances.h"
 
 /// Lengths as Python has them: numbers, arrays, and texts as the command takes them.
 namespace vdb_offset::python {
@@ -33,7 +33,7 @@ Distances inward_distances_of(const py::object& inner, const Source& source, con
 std::pair<double, double> tolerance_of(const py::object& tolerance);
 
 /// A number of world units, or a text with one or percent. Nothing for anything else.
-std::optional<scene::Distance> length_of(const py::object& given);
+std::optional<GivenDistance> length_of(const py::object& given);
 
 /// Distances by axis: a space in which they are one distance.
 struct ByAxis {

@@ -102,7 +102,7 @@ double cavity_distance(const py::object& inner, const Source& source, const Dist
 void require_valid(const IsoStatistics& found, const std::string& distance, Clock::time_point start) {
   if (found.valid()) return;
   const auto count = [](std::size_t many, const char* what) { return std::to_string(many) + what; };
-  throw InvalidResult("capture: expected a closed, manifold surface that does not cross itself, got " +
+  throw InvalidResult("iso-surface: expected a closed, manifold surface that does not cross itself, got " +
                           count(found.border_edges, " border edges, ") +
                           count(found.non_manifold_edges, " non-manifold edges, ") +
                           count(found.pinched_vertices, " pinched vertices, ") +

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -120,5 +121,26 @@ class VDB_OFFSET_API DistanceExpression {
   std::vector<std::string> names_;  // of variables and constants, as they occur
   bool percent_ = false;
 };
+
+/// A distance as users write it: world units ("0.1"), or a share of the bounding-box diagonal of the vertices in
+/// use ("1.5%"); or an expression that tells each vertex its own.
+struct VDB_OFFSET_API GivenDistance {
+  double value = 0;
+  bool percent = false;
+  std::optional<DistanceExpression> expression;  ///< If set, value and percent do not count.
+
+  double in_world_units(double diagonal) const;
+};
+/// \throw InvalidInput unless the text is a finite number, with or without a percent sign behind it.
+VDB_OFFSET_API GivenDistance parse_distance(const std::string& text);
+/// Parses a number as parse_distance() does, or else an expression. \throw InvalidExpression
+VDB_OFFSET_API GivenDistance parse_distance_or_expression(const std::string& text);
+
+/// The distances of a mesh's vertices, or of curves' points. `normals_of` and `texture_of` are called only by an
+/// expression that uses normals or texture coordinates.
+/// \throw InvalidInput, see DistanceExpression
+VDB_OFFSET_API Distances distances_of(const GivenDistance& distance, PolygonView mesh,
+                                      const std::function<std::vector<Vec3d>()>& normals_of,
+                                      const std::function<std::vector<Vec2d>()>& texture_of);
 
 }  // namespace vdb_offset

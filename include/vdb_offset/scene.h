@@ -14,27 +14,6 @@
 
 namespace vdb_offset::scene {
 
-/// A distance as users write it: world units ("0.1"), or a share of the bounding-box diagonal of the vertices in
-/// use ("1.5%"); or an expression that tells each vertex its own.
-struct VDB_OFFSET_API Distance {
-  double value = 0;
-  bool percent = false;
-  std::optional<DistanceExpression> expression;  ///< If set, value and percent do not count.
-
-  double in_world_units(double diagonal) const;
-};
-/// \throw InvalidInput unless the text is a finite number, with or without a percent sign behind it.
-VDB_OFFSET_API Distance parse_distance(const std::string& text);
-/// Parses a number as parse_distance() does, or else an expression. \throw InvalidExpression
-VDB_OFFSET_API Distance parse_distance_or_expression(const std::string& text);
-
-/// The distances of a mesh's vertices, or of curves' points. `normals_of` and `texture_of` are called only by an
-/// expression that uses normals or texture coordinates.
-/// \throw InvalidInput, see DistanceExpression
-VDB_OFFSET_API Distances distances_of(const Distance& distance, PolygonView mesh,
-                                      const std::function<std::vector<Vec3d>()>& normals_of,
-                                      const std::function<std::vector<Vec2d>()>& texture_of);
-
 /// Where every reached vertex should be, in closed form.
 struct VDB_OFFSET_API Answer {
   enum class Form {
@@ -74,7 +53,7 @@ struct VDB_OFFSET_API Scene {
   std::string path, description;
   std::string mesh_path;  ///< Of a scene that names a file; else empty and `shape` holds the mesh.
   Polygons shape;
-  Distance distance;
+  GivenDistance distance;
   GridOptions grid;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
@@ -104,45 +83,5 @@ VDB_OFFSET_API std::vector<std::string> unmet(const Expectations& expect, Polygo
 /// The expectations that the shell of a scene with a volume does not meet, in words: it must also be closed, manifold
 /// and oriented, and must not cross itself.
 VDB_OFFSET_API std::vector<std::string> unmet(const Expectations& expect, const ShellFacts& shell);
-
-// Procedural meshes, faces counter-clockwise seen from outside. Lengths in world units. Every count is the number
-// of faces along that direction. All throw InvalidInput for a count below its least or a length that is not positive.
-
-/// Icosahedron with its triangles split in four `subdivisions` times, on a sphere: 10 * 4^n + 2 vertices.
-VDB_OFFSET_API Polygons icosphere(double radius, int subdivisions);
-/// Quads between rings of latitude, triangles at the poles (on the z axis).
-VDB_OFFSET_API Polygons uv_sphere(double radius, int segments, int rings);
-/// Open: the upper half of uv_sphere(), with a circle in the plane z = 0 as its border.
-VDB_OFFSET_API Polygons hemisphere(double radius, int segments, int rings);
-/// Axis-aligned box centred at the origin, `divisions` faces along each edge: quads, or triangles by pairs.
-VDB_OFFSET_API Polygons box(const Vec3d& size, int divisions, bool triangles);
-/// Around the z axis: `major` is the radius of the circle of centres, `minor` that of the tube.
-VDB_OFFSET_API Polygons torus(double major, double minor, int segments, int sides);
-/// Along z, closed by flat caps of `rings` rings.
-VDB_OFFSET_API Polygons cylinder(double radius, double height, int segments, int stacks, int rings);
-/// Along z, closed: a round block with a hole from above; the hole has its floor at z = 0 and its mouth at z = `depth`;
-/// the block is `wall` thick around and below it.
-VDB_OFFSET_API Polygons socket(double radius, double depth, double wall, int segments, int stacks);
-/// Two square boxes, one above the other, `gap` apart along z; the gap is centred at z = 0.
-VDB_OFFSET_API Polygons plates(double width, double thickness, double gap, int divisions);
-/// Open: two rectangles that meet along the y axis and enclose `angle` degrees, opening upwards; seen from inside.
-VDB_OFFSET_API Polygons wedge(double angle, double length, double width, int divisions);
-/// Open: three squares in the coordinate planes that meet at the origin, seen from x, y, z > 0.
-VDB_OFFSET_API Polygons room_corner(double side, int divisions);
-/// Open: a square duct along x, `inlet` wide until a third of its length, `outlet` from two thirds on; seen from
-/// inside, as the flow does.
-VDB_OFFSET_API Polygons diffuser(double inlet, double outlet, double length, int divisions);
-/// NACA four-digit section in x and z with a sharp trailing edge, extruded along y, closed at both ends.
-VDB_OFFSET_API Polygons naca_wing(const std::string& digits, double chord, double span, int points, int stacks);
-/// Straight-flanked gear with a bore, around the z axis.
-VDB_OFFSET_API Polygons gear(int teeth, double root_radius, double tip_radius, double bore_radius, double thickness,
-                             int stacks);
-/// Icosphere with waves of the given amplitude; the seed decides their directions and phases, on any machine alike.
-VDB_OFFSET_API Polygons bumpy_sphere(double radius, double amplitude, double frequency, unsigned seed,
-                                     int subdivisions);
-/// A box with a box-shaped cavity inside, walls `wall` thick.
-VDB_OFFSET_API Polygons hollow_box(double side, double wall, int divisions);
-/// Open: a square patch over x and y with height amplitude * sin(2 pi x / side) * sin(2 pi y / side).
-VDB_OFFSET_API Polygons patch(double side, double amplitude, int divisions);
 
 }  // namespace vdb_offset::scene

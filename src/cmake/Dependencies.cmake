@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The packages that the components need, for the library's own build and for those who link it.
 #
-# vdb_offset_find_dependencies(COMPONENT): by VDB_OFFSET_EXPRESSIONS, VDB_OFFSET_VTK and VDB_OFFSET_CGNS; a shared library
-# has its own with it. core comes first; vdb_offset_wanted lists all the components that will be asked for.
+# vdb_offset_find_dependencies(COMPONENT): a shared library has its own with it. The engine comes first.
 
 # A library without a package of its own as a target, so that no path of this machine goes into what is installed.
 function(vdb_offset_find_library target header library)
@@ -19,11 +18,7 @@ function(vdb_offset_find_library target header library)
 endfunction()
 
 macro(vdb_offset_find_dependencies component)
-  if(${component} STREQUAL core)
-    # What volume needs: here, before OpenVDB, whose module for TBB makes targets that VTK's own would trip over.
-    if("volume" IN_LIST vdb_offset_wanted AND VDB_OFFSET_VTK AND NOT vdb_offset_shared)
-      find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel CommonMisc IOLegacy IOXML ${vdb_offset_vtk_for_tests})
-    endif()
+  if(${component} STREQUAL engine)
     find_package(TBB 2021 REQUIRED)
     # Debian keeps OpenVDB's find module beside its other files, not on CMake's module path.
     find_path(OPENVDB_MODULE_DIR FindOpenVDB.cmake PATH_SUFFIXES cmake/OpenVDB lib/cmake/OpenVDB
@@ -43,19 +38,13 @@ macro(vdb_offset_find_dependencies component)
       # CGAL is headers alone; its exact numbers need these two.
       vdb_offset_find_library(vdb_offset_gmp gmp.h gmp)
       vdb_offset_find_library(vdb_offset_mpfr mpfr.h mpfr)
-      if(VDB_OFFSET_EXPRESSIONS)
-        find_package(muparser 2.3 REQUIRED)
-      endif()
+      find_package(muparser 2.3 REQUIRED)
     endif()
-  elseif(${component} STREQUAL io AND NOT vdb_offset_shared)
+  elseif(${component} STREQUAL files AND NOT vdb_offset_shared)
     # For compressed files and drawings.
     find_package(ZLIB REQUIRED)
     find_package(EXPAT REQUIRED)
     vdb_offset_find_library(vdb_offset_zstd zstd.h zstd)
-  elseif(${component} STREQUAL volume AND NOT vdb_offset_shared)
-    if(VDB_OFFSET_CGNS)
-      vdb_offset_find_library(vdb_offset_cgns cgnslib.h cgns)
-    endif()
   elseif(${component} STREQUAL openmesh)
     find_package(OpenMesh REQUIRED)
   endif()

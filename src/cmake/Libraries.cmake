@@ -1,26 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # From objects to libraries, and what is installed of them.
 
-# Of the objects that CMake lists, precompiled headers are none.
-function(vdb_offset_objects component result)
-  set(${result} $<FILTER:$<TARGET_OBJECTS:vdb_offset_${component}_objects>,INCLUDE,[.]o$> PARENT_SCOPE)
-endfunction()
-
-# Those of a whole component, with the writers that volume has apart.
-function(vdb_offset_component_objects component result)
-  vdb_offset_objects(${component} objects)
-  if(component STREQUAL volume)
-    foreach(part IN LISTS volume_parts)
-      vdb_offset_objects(${part} more)
-      list(APPEND objects ${more})
-    endforeach()
-  endif()
-  set(${result} ${objects} PARENT_SCOPE)
-endfunction()
-
 # vdb_offset_inside: all objects and their headers, for the tests and benchmarks.
 add_library(vdb_offset_inside INTERFACE)
-foreach(component IN LISTS components volume_parts)
+foreach(component IN LISTS components)
   target_link_libraries(vdb_offset_inside INTERFACE vdb_offset_${component}_objects)
   vdb_offset_objects(${component} objects)
   target_sources(vdb_offset_inside INTERFACE ${objects})
@@ -39,7 +22,7 @@ if(NOT BUILD_SHARED_LIBS AND NOT VDB_OFFSET_SANITIZE AND NOT VDB_OFFSET_SANITIZE
 endif()
 
 function(vdb_offset_archive component)
-  vdb_offset_component_objects(${component} objects)
+  vdb_offset_objects(${component} objects)
   if(is_sealed)
     set(sealed ${CMAKE_CURRENT_BINARY_DIR}/sealed/vdb_offset_${component}.o)
     file(GENERATE OUTPUT ${sealed}.objects CONTENT "$<JOIN:${objects},\n>")
@@ -54,27 +37,25 @@ function(vdb_offset_archive component)
   set_target_properties(vdb_offset_${component} PROPERTIES LINKER_LANGUAGE CXX)
 endfunction()
 
-# What is linked along with a component, for those who link it.
-set(core_public OpenVDB::openvdb TBB::tbb)
-set(io_public vdb_offset_core)
-set(volume_public vdb_offset_core)
-set(scene_public vdb_offset_io)
-set(openmesh_public vdb_offset_core OpenMeshCore)
+# What is linked along with a component by those who link it: seen in its headers, and not.
+set(engine_public OpenVDB::openvdb TBB::tbb)
+set(engine_needs fmt::fmt vdb_offset_gmp vdb_offset_mpfr muparser::muparser)
+set(files_public vdb_offset_engine)
+set(files_needs EXPAT::EXPAT ZLIB::ZLIB vdb_offset_zstd)
+set(openmesh_public vdb_offset_engine OpenMeshCore)
 
 if(BUILD_SHARED_LIBS)
   add_library(vdb_offset SHARED)
   foreach(component IN LISTS components)
-    vdb_offset_component_objects(${component} objects)
+    vdb_offset_objects(${component} objects)
     target_sources(vdb_offset PRIVATE ${objects})
     target_link_libraries(vdb_offset PRIVATE ${${component}_needs})
     add_library(vdb_offset_${component} INTERFACE)
     target_link_libraries(vdb_offset_${component} INTERFACE vdb_offset)
   endforeach()
-  target_link_libraries(vdb_offset PUBLIC ${core_public})
-  if(VDB_OFFSET_OPENMESH)
-    target_link_libraries(vdb_offset_openmesh INTERFACE OpenMeshCore)
-    target_link_libraries(vdb_offset PRIVATE OpenMeshCore)
-  endif()
+  target_link_libraries(vdb_offset PUBLIC ${engine_public})
+  target_link_libraries(vdb_offset_openmesh INTERFACE OpenMeshCore)
+  target_link_libraries(vdb_offset PRIVATE OpenMeshCore)
   # What the standard library's headers compile in is not hidden; calls of it stay inside as well.
   target_link_options(vdb_offset PRIVATE -Wl,-Bsymbolic-functions)
   set_target_properties(vdb_offset PROPERTIES LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION}
@@ -95,20 +76,8 @@ foreach(target IN LISTS components)
 endforeach()
 add_library(vdb_offset::vdb_offset ALIAS vdb_offset)
 
-# The public headers: what is not named here is not installed.
-set(public_headers
-  api.h check.h curve_offset.h curves.h distance_field.h distances.h error.h exact_surface.h grid.h iso_surface.h layer_cells.h layers.h level_set.h
-  mesh_facts.h numbers.h offset.h options.h output_files.h polygons.h refinement.h report.h result.h run.h scene.h
-  shell.h statistics.h tolerance.h version.h volume_mesh.h
-  io/attributes.h io/cad_file.h io/curve_file.h io/file_bytes.h io/iso_file.h io/mesh_file.h io/page_file.h io/refined_file.h io/shell_file.h io/states_file.h io/volume_file.h)
-if(VDB_OFFSET_OPENMESH)
-  list(APPEND public_headers openmesh.h)
-endif()
-foreach(header IN LISTS public_headers)
-  cmake_path(GET header PARENT_PATH folder)
-  install(FILES include/vdb_offset/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vdb_offset/${folder}
-          COMPONENT development)
-endforeach()
+# The public headers.
+install(DIRECTORY include/vdb_offset DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.h)
 if(BUILD_SHARED_LIBS)
   target_compile_features(vdb_offset PUBLIC cxx_std_20)
   target_include_directories(vdb_offset PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
@@ -124,7 +93,7 @@ endif()
 # The package: a set of targets for each component, so that a user of one needs no packages of the others.
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vdb_offset)
 if(BUILD_SHARED_LIBS)
-  install(TARGETS vdb_offset EXPORT vdb_offset_core_targets COMPONENT development)
+  install(TARGETS vdb_offset EXPORT vdb_offset_engine_targets COMPONENT development)
 endif()
 foreach(component IN LISTS components)
   install(TARGETS vdb_offset_${component} EXPORT vdb_offset_${component}_targets COMPONENT development)
@@ -150,19 +119,8 @@ if(BUILD_SHARED_LIBS)
   set(pc_requires "Imath")
 else()
   # Static, a program needs all that the library does.
-  set(pc_libraries "-lvdb_offset_scene -lvdb_offset_volume -lvdb_offset_io -lvdb_offset_core -lmpfr -lgmp")
-  set(pc_requires "Imath fmt expat zlib libzstd")
-  if(VDB_OFFSET_EXPRESSIONS)
-    string(APPEND pc_requires " muparser")
-  endif()
-  if(VDB_OFFSET_VTK)
-    foreach(library CommonMisc IOXML IOXMLParser CommonDataModel CommonExecutionModel CommonCore)
-      string(APPEND pc_libraries " -lvtk${library}-${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}")
-    endforeach()
-  endif()
-  if(VDB_OFFSET_CGNS)
-    string(APPEND pc_libraries " -lcgns")
-  endif()
+  set(pc_libraries "-lvdb_offset_files -lvdb_offset_engine -lmpfr -lgmp")
+  set(pc_requires "Imath fmt expat zlib libzstd muparser")
 endif()
 # From where the file itself lies, so that what is installed may be moved, or packed.
 cmake_path(SET pc_dir NORMALIZE /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -13,7 +13,7 @@ install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONE
 install(DIRECTORY docs scenes DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
 
 # A shared library would belong into a package of its own, which nobody has asked for.
-if(BUILD_SHARED_LIBS OR NOT VDB_OFFSET_TOOLS OR NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
+if(BUILD_SHARED_LIBS OR NOT VDB_OFFSET_FILES OR NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
   return()
 endif()
 
@@ -63,25 +63,11 @@ ${about}
 This package has the command vdb_offset, vdb_offset-batch for folders of
 models, and the guides.")
 
-# Depends: what find_package needs for the component core alone. Those of io are small and recommended; VTK and CGNS
-# (volume) and OpenMesh are large, and few programs ask for these components.
-set(core_packages libopenvdb-dev libtbb-dev libboost-iostreams-dev libblosc-dev libimath-dev zlib1g-dev libfmt-dev
-                  libgmp-dev libmpfr-dev)
-set(volume_packages "")
-if(VDB_OFFSET_EXPRESSIONS)
-  list(APPEND core_packages libmuparser-dev)
-endif()
-if(VDB_OFFSET_VTK)
-  list(APPEND volume_packages libvtk9-dev)
-endif()
-if(VDB_OFFSET_CGNS)
-  list(APPEND volume_packages libcgns-dev)
-endif()
-if(VDB_OFFSET_OPENMESH)
-  list(APPEND volume_packages libopenmesh-dev)
-endif()
-list(JOIN core_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
-list(JOIN volume_packages ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS)
+# Depends: what find_package needs for the component engine alone. Those of files are small and recommended; OpenMesh is for
+# one component, which few programs ask for.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libopenvdb-dev, libtbb-dev, libboost-iostreams-dev, libblosc-dev, libimath-dev, \
+zlib1g-dev, libfmt-dev, libgmp-dev, libmpfr-dev, libmuparser-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libopenmesh-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvdb-offset-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libexpat1-dev, libzstd-dev, pkg-config")
@@ -89,9 +75,9 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "offset meshes and keep their topology 
 ${about}
 .
 This package has the library as archives, its headers, and its files for CMake
-and pkg-config. The component core needs nothing but what this package depends
-on; the components io, volume and openmesh need packages that are recommended
-and suggested.")
+and pkg-config. The component engine needs nothing but what this package
+depends on; the components files and openmesh need packages that are
+recommended and suggested.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-vdb-offset)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -11,8 +11,8 @@
 
 #include <unistd.h>
 
+#include "cad/cad_worker.h"
 #include "support/places.h"
-#include "vdb_offset/io/documents/cad/cad_worker.h"
 
 namespace vdb_offset::test {
 

@@ -27,9 +27,9 @@
 #include <gp_Ax2.hxx>
 #include <gp_Vec.hxx>
 
-#include "vdb_offset/cad/judge/judge.h"
-#include "vdb_offset/cad/surface/face_grid.h"
-#include "vdb_offset/cad/surface/make_triangles.h"
+#include "judge/judge.h"
+#include "surface/face_grid.h"
+#include "surface/make_triangles.h"
 
 namespace {
 

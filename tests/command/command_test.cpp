@@ -14,21 +14,21 @@
 #include <thread>
 
 #include "command/shell_command.h"
+#include "space/surface/surface.h"
 #include "support/dxf_text.h"
 #include "support/places.h"
 #include "support/solids.h"
+#include "valid/faults/triangle_crossings.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/scene.h"
-#include "vdb_offset/surface/surface.h"
-#include "vdb_offset/validity/triangle_crossings.h"
+#include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;
 
 TEST_CASE("command: what is inside out is told, and which option enlarges it", "[command]") {
   const ShellCommand shell;
-  Polygons sphere = scene::icosphere(1, 3);
+  Polygons sphere = shapes::icosphere(1, 3);
   std::reverse(sphere.corners.begin(), sphere.corners.end());
   io::write_mesh(shell.file("reversed.obj"), sphere.view());
   const auto least_radius = [&](const std::string& name) {
@@ -55,7 +55,7 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
   CHECK(shell("check reversed.obj keep.obj -d 0.1 --strict").code == 0);
   CHECK_THAT(shell("sphere.obj out.obj -d 0.1").out, !Catch::Contains("inward"));
   // A cavity whose faces point outward grows by a distance above 0, unless it is told to be one.
-  Polygons hollow = scene::icosphere(1, 3), cavity = scene::icosphere(0.5, 3);
+  Polygons hollow = shapes::icosphere(1, 3), cavity = shapes::icosphere(0.5, 3);
   const auto first = static_cast<std::uint32_t>(hollow.positions.size());
   hollow.positions.insert(hollow.positions.end(), cavity.positions.begin(), cavity.positions.end());
   for (std::size_t f = 0; f < cavity.face_count(); ++f) {
@@ -108,7 +108,7 @@ TEST_CASE("command: layers that end on the wrong side of what is open are told o
   const auto coverage = [&] {
     return nlohmann::json::parse(shell.slurp(shell.file("r.json")))["layers"]["coverage"].get<double>();
   };
-  const Polygons tube = scene::cylinder(1, 3, 40, 10, 1), wing = scene::naca_wing("0012", 1, 1, 60, 20);
+  const Polygons tube = shapes::cylinder(1, 3, 40, 10, 1), wing = shapes::naca_wing("0012", 1, 1, 60, 20);
   for (const std::string name : {"tube", "wing"}) {
     INFO(name);
     const bool is_tube = name == "tube";
@@ -228,7 +228,7 @@ TEST_CASE("command: parts, obstacles and shells", "[command]") {
   CHECK(io::read_mesh(shell.file("both.obj")).polygons.positions[4][2] == Approx(0.2));
   check_failure(shell, "two.obj no.obj -d 0.1 --border round", 1, "'slide', 'fixed' or 'free'");
 
-  Polygons lid = scene::patch(6, 0, 2);
+  Polygons lid = shapes::patch(6, 0, 2);
   for (Vec3d& p : lid.positions) p[2] += 1.2;
   io::write_mesh(shell.file("lid.obj"), lid.view());
   CHECK(shell("sphere.obj under.obj -d 0.5 --obstacle lid.obj --clearance 0.05").code == 0);
@@ -272,9 +272,9 @@ TEST_CASE("command: all causes of a quarter or more of the faces' error are told
   const ShellCommand shell;
   // A coarse ball beside a cube that is as large: the ball's faces are coarse, the cube's have corners.
   const auto line_of = [&](double radius, const std::string& options) {
-    Polygons both = scene::icosphere(radius, 1);
+    Polygons both = shapes::icosphere(radius, 1);
     const auto first = static_cast<std::uint32_t>(both.positions.size());
-    const Polygons cube = scene::box(Vec3d(1), 6, false);
+    const Polygons cube = shapes::box(Vec3d(1), 6, false);
     for (const Vec3d& p : cube.positions) both.positions.push_back(p + Vec3d(5, 0, 0));
     for (std::size_t f = 0; f < cube.face_count(); ++f) {
       for (const auto v : cube.view().face(f)) both.corners.push_back(first + v);
@@ -304,7 +304,7 @@ TEST_CASE("command: all causes of a quarter or more of the faces' error are told
 
 TEST_CASE("command: --strict-faces judges layers and iso-surfaces as well", "[command][layers][capture]") {
   const ShellCommand shell;
-  io::write_mesh(shell.file("box.obj"), scene::box(Vec3d(1), 4, false).view());
+  io::write_mesh(shell.file("box.obj"), shapes::box(Vec3d(1), 4, false).view());
   std::ofstream(shell.file("square.txt")) << "0 0\n1 0\n1 1\n0 1\n0 0\n";
   for (const std::string input : {"box.obj", "square.txt"}) {
     const std::string layers = input + " out.vtu --layers 3 --first-height 0.02 ";
@@ -391,7 +391,7 @@ TEST_CASE("command: check measures any two meshes", "[command]") {
   std::swap(turned.positions[turned.corners[0]], turned.positions[turned.corners[1]]);
   io::write_mesh(shell.file("bad.obj"), turned.view());
   CHECK(shell("check sphere.obj bad.obj").code == 3);
-  io::write_mesh(shell.file("box.obj"), scene::box(Vec3d(1), 2, true).view());
+  io::write_mesh(shell.file("box.obj"), shapes::box(Vec3d(1), 2, true).view());
   // What is asked to stay in a plane and has left it is told, as is a plane on which nothing lies.
   CHECK(shell("check sphere.obj out.obj -d 0.1 --symmetry none").code == 0);
   CHECK(shell("box.obj moved.obj -d 0.1 --symmetry z=0.5 -q").code == 0);
@@ -428,9 +428,9 @@ TEST_CASE("command: reports of names that are no UTF-8", "[command]") {
   const std::string name = "a\xff\xc3.obj";
   std::ofstream file(shell.file(name));
   file << "g sk\xe9\n";
-  for (const Vec3d& p : scene::box(Vec3d(1), 1, true).positions)
+  for (const Vec3d& p : shapes::box(Vec3d(1), 1, true).positions)
     file << "v " << p[0] << " " << p[1] << " " << p[2] << "\n";
-  const Polygons box = scene::box(Vec3d(1), 1, true);
+  const Polygons box = shapes::box(Vec3d(1), 1, true);
   for (std::size_t f = 0; f < box.face_count(); ++f) {
     file << "f";
     for (const auto v : box.view().face(f)) file << " " << v + 1;
@@ -451,7 +451,7 @@ TEST_CASE("command: reports of names that are no UTF-8", "[command]") {
 TEST_CASE("command: seams that are closed, and those that look like it", "[command]") {
   const ShellCommand shell;
   const auto write = [&](const std::string& name, double gap) {
-    Polygons box = scene::box(Vec3d(1), 4, true);
+    Polygons box = shapes::box(Vec3d(1), 4, true);
     const auto first = static_cast<std::uint32_t>(box.positions.size());
     const Polygons whole = box;
     for (const Vec3d& p : whole.positions) box.positions.push_back(p + Vec3d(gap, -gap, gap));
@@ -584,7 +584,7 @@ TEST_CASE("command: same bytes for any number of threads", "[command]") {
 
 TEST_CASE("command: an interrupt ends it by that signal and leaves nothing", "[command]") {
   const ShellCommand shell;
-  io::write_mesh(shell.file("big.obj"), scene::bumpy_sphere(1, 0.4, 2, 1, 7).view());
+  io::write_mesh(shell.file("big.obj"), shapes::bumpy_sphere(1, 0.4, 2, 1, 7).view());
   const std::size_t before = shell.count();
   const std::string command = test::command_path(), input = shell.file("big.obj"), output = shell.file("out.obj");
   const pid_t child = fork();
@@ -638,7 +638,7 @@ TEST_CASE("command: heights of layers from a file, and structured blocks", "[com
   check_failure(shell, "sphere.obj new.vtu --heights wrong.txt --layers 2", 2, "line 3");
   std::ofstream(shell.file("falling.txt")) << "0.02\n0.01\n";
   check_failure(shell, "sphere.obj new.vtu --heights falling.txt", 2, "expected heights that rise");
-  io::write_mesh(shell.file("patch.obj"), scene::patch(1, 0.1, 8).view());
+  io::write_mesh(shell.file("patch.obj"), shapes::patch(1, 0.1, 8).view());
   for (const char* name : {"block.vts", "block.xyz"}) {
     CHECK(shell("patch.obj " + std::string(name) + " --layers 3 --total-thickness 2% --structured").code == 0);
     CHECK(shell.has(name));
@@ -785,7 +785,7 @@ TEST_CASE("command: skins of a hollow solid that meet are not written", "[comman
   CHECK(fine.code == 0);
   CHECK_THAT(fine.out, Catch::Contains("0 pairs of triangles meet"));
   // What lies inside the solid meets its cavity, however small voxels are.
-  const Polygons box = scene::box(Vec3d(2), 1, true);
+  const Polygons box = shapes::box(Vec3d(2), 1, true);
   Polygons both = box;
   for (const Vec3d& p : box.positions) both.positions.push_back(p + Vec3d(1, 0.1, 0.2));
   for (std::size_t f = 0; f < box.face_count(); ++f) {
@@ -939,7 +939,7 @@ TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][c
 
 TEST_CASE("command: distances by axis and fits, and what goes with them", "[command]") {
   const ShellCommand shell;
-  Polygons floor = scene::box(Vec3d(4, 4, 1), 2, true);
+  Polygons floor = shapes::box(Vec3d(4, 4, 1), 2, true);
   for (Vec3d& p : floor.positions) p[2] -= 1.55;  // its upper side at -1.05
   io::write_mesh(shell.file("floor.obj"), floor.view());
   CHECK(shell("sphere.obj thin.stl --distance-xy -0.1 --distance-z -0.05").code == 0);
@@ -975,7 +975,7 @@ TEST_CASE("command: distances by axis and fits, and what goes with them", "[comm
 TEST_CASE("command: an iso-surface whose corners would be rounded by more than voxels are large is refused",
           "[command][iso]") {
   const ShellCommand run;
-  Polygons sphere = scene::icosphere(1, 3);
+  Polygons sphere = shapes::icosphere(1, 3);
   for (Vec3d& p : sphere.positions) p[0] += 104;  // where two digits leave next to nothing of x
   io::write_mesh(run.file("far.obj"), sphere.view());
   const Run made = run("far.obj out.obj --mode iso -d 0.3 --voxel-size 0.8 --precision 2 --report out.json");
@@ -1061,7 +1061,7 @@ TEST_CASE("command: what is judged of a polygon is what is written in formats of
 TEST_CASE("command: a distance that no vertex reaches is refused, with one that most reach", "[command]") {
   const ShellCommand run;
   // A box of 2 by 2 by 0.4: nothing inside is farther than 0.2 from it.
-  io::write_mesh(run.file("box.obj"), scene::box(Vec3d(2, 2, 0.4), 8, true).view());
+  io::write_mesh(run.file("box.obj"), shapes::box(Vec3d(2, 2, 0.4), 8, true).view());
   const Run none = run("box.obj out.obj --distance=-0.5");
   CHECK(none.code == 3);
   CHECK_THAT(none.err, Catch::Contains("reaches the distance of -0.5") && Catch::Contains("comes to 0.2") &&

@@ -15,7 +15,7 @@
 
 #include "support/places.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/scene.h"
+#include "vdb_offset/shapes.h"
 
 struct Run {
   int code;  ///< Exit code, or 128 + signal.
@@ -27,7 +27,7 @@ class ShellCommand {
  public:
   ShellCommand() {
     std::filesystem::create_directories(path_);
-    vdb_offset::io::write_mesh(file("sphere.obj"), vdb_offset::scene::icosphere(1, 3).view());
+    vdb_offset::io::write_mesh(file("sphere.obj"), vdb_offset::shapes::icosphere(1, 3).view());
   }
   ~ShellCommand() { std::filesystem::remove_all(path_); }
   std::string file(const std::string& name) const { return (path_ / name).string(); }

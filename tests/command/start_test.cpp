@@ -8,7 +8,6 @@
 #include "command/shell_command.h"
 #include "support/places.h"
 
-#ifdef LOADS_WRITERS
 namespace {
 
 /// The names of all that is loaded while the command runs, which must succeed.
@@ -65,4 +64,3 @@ TEST_CASE("command: a missing module is told before the work, in one line", "[co
     CHECK(!shell.has(out));
   }
 }
-#endif

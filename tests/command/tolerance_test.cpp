@@ -13,7 +13,7 @@
 #include "command/shell_command.h"
 #include "support/places.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/scene.h"
+#include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;
 
@@ -78,7 +78,7 @@ const Vec3d kHalf(1, 0.6, 0.4);
 TEST_CASE("tolerance: faces are at the distance, and source and offset correspond, in every format",
           "[command][tolerance]") {
   const ShellCommand shell;
-  io::write_mesh(shell.file("box.obj"), scene::box(2 * kHalf, 4, false).view());
+  io::write_mesh(shell.file("box.obj"), shapes::box(2 * kHalf, 4, false).view());
   for (const std::string ending : {"obj", "ply", "off", "stl"}) {
     INFO(ending);
     const std::string source = "box." + ending, refined = "refined." + ending, offset = "out." + ending;
@@ -170,7 +170,7 @@ TEST_CASE("tolerance: the refined source keeps what the file has, in any format"
 
 TEST_CASE("tolerance: a length, distances of each vertex, parts, scenes, and a distance of 0", "[command][tolerance]") {
   const ShellCommand shell;
-  io::write_mesh(shell.file("box.obj"), scene::box(2 * kHalf, 4, false).view());
+  io::write_mesh(shell.file("box.obj"), shapes::box(2 * kHalf, 4, false).view());
   const Run length = shell("box.obj out.obj -d 0.2 --tolerance 0.004 --report r.json --refined-source refined.obj");
   CHECK_THAT(length.out, Catch::Contains("100.00 % of the area certified within 0.004 at every point"));
   CHECK(json_of(shell, "r.json")["certified"]["tolerance_length"] == 0.004);
@@ -204,7 +204,7 @@ TEST_CASE("tolerance: a length, distances of each vertex, parts, scenes, and a d
 TEST_CASE("tolerance: 3 where --max-faces stops it, or --strict asks for what is not there",
           "[command][tolerance][long]") {
   const ShellCommand shell;
-  io::write_mesh(shell.file("box.obj"), scene::box(2 * kHalf, 4, false).view());
+  io::write_mesh(shell.file("box.obj"), shapes::box(2 * kHalf, 4, false).view());
   const Run run = shell(
       "box.obj out.obj -d 0.2 --tolerance 1% --max-faces 200 --refined-source refined.obj "
       "--report r.json");
@@ -323,9 +323,9 @@ TEST_CASE("faces: where a wall is thinner than two distances, no other option is
 
 TEST_CASE("faces: beside vertices that cannot move, no smaller distance is named", "[command][faces][obstacles]") {
   const ShellCommand shell;
-  io::write_mesh(shell.file("box.obj"), scene::box(Vec3d(1), 1, false).view());
+  io::write_mesh(shell.file("box.obj"), shapes::box(Vec3d(1), 1, false).view());
   for (const bool touches : {true, false}) {
-    Polygons above = scene::box(Vec3d(3, 3, 0.2), 1, false);
+    Polygons above = shapes::box(Vec3d(3, 3, 0.2), 1, false);
     for (Vec3d& p : above.positions) p[2] += 0.6 + (touches ? 0 : 0.05);
     io::write_mesh(shell.file("above.obj"), above.view());
     const Run run = shell("box.obj out.obj -d 0.1 --obstacle above.obj");
@@ -341,7 +341,7 @@ TEST_CASE("tolerance: how far off the worst of all faces is, is said beside what
           "[command][tolerance]") {
   const ShellCommand shell;
   // The sides that face each other stop halfway between.
-  io::write_mesh(shell.file("plates.obj"), scene::plates(1, 0.2, 0.06, 4).view());
+  io::write_mesh(shell.file("plates.obj"), shapes::plates(1, 0.2, 0.06, 4).view());
   const Run run = shell("plates.obj out.obj -d 0.06 --tolerance 1% --refined-source refined.obj --report r.json");
   CHECK_THAT(run.out, Catch::Contains(", and the worst of all faces up to "));
   const auto certified = json_of(shell, "r.json")["certified"];

@@ -4,7 +4,7 @@
 #include <vdb_offset/curve_offset.h>
 #include <vdb_offset/iso_surface.h>
 #include <vdb_offset/offset.h>
-#include <vdb_offset/scene.h>
+#include <vdb_offset/shapes.h>
 #include <vdb_offset/shell.h>
 
 #include <bit>
@@ -39,7 +39,7 @@ static void print(const char* what, const std::vector<Vec3d>& positions) {
 
 int main() {
   if (use_of_headers() == 12345) return 1;
-  vdb_offset::Polygons ball = vdb_offset::scene::bumpy_sphere(1, 0.2, 3, 7, 4);
+  vdb_offset::Polygons ball = vdb_offset::shapes::bumpy_sphere(1, 0.2, 3, 7, 4);
   for (const double distance : {0.05, -0.2}) {
     const auto result = vdb_offset::offset(ball.view(), {.distance = distance});
     print("offset", result.positions);

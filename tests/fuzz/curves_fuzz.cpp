@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "dxf/dxf.h"
 #include "fuzz/promise.h"
-#include "vdb_offset/base/rounding.h"
+#include "ground/numbers/rounding.h"
+#include "svg/svg.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/io/curve/dxf/dxf.h"
-#include "vdb_offset/io/curve/svg.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
 

@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "fuzz/promise.h"
+#include "ground/numbers/rounding.h"
+#include "ply/ply_header.h"
 #include "support/splitter.h"
-#include "vdb_offset/base/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/mesh/read/ply_header.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/refined_file.h"
 

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "document/convert.h"
 #include "fuzz/promise.h"
 #include "support/threemf_packages.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/mesh/convert.h"
 #include "vdb_offset/io/mesh_file.h"
 
 using namespace vdb_offset;

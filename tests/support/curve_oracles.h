@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/curve/ribbon.h"
+#include "space/curve/ribbon.h"
 
 /// Curves to try, and what holds of them by brute force.
 namespace vdb_offset::test {

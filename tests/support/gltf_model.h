@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "gltf/uri.h"
 #include "support/bytes.h"
-#include "vdb_offset/io/documents/gltf/uri.h"
 #include "vdb_offset/numbers.h"
 
 namespace vdb_offset::test {

@@ -6,13 +6,13 @@
 #include <limits>
 #include <numbers>
 
+#include "products/cells/number_cells.h"
+#include "products/volume/cell_quality.h"
 #include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers.h"
-#include "vdb_offset/layers/cells/number_cells.h"
 #include "vdb_offset/result.h"
-#include "vdb_offset/scene.h"
+#include "vdb_offset/shapes.h"
 #include "vdb_offset/statistics.h"
-#include "vdb_offset/volume/cell_quality.h"
 
 namespace vdb_offset::test {
 namespace {
@@ -44,7 +44,7 @@ void for_each_triangle(PolygonView mesh, Visit&& visit) {
 }  // namespace
 
 std::pair<Polygons, std::vector<double>> far_sphere() {
-  Polygons mesh = scene::icosphere(0.01, 4);
+  Polygons mesh = shapes::icosphere(0.01, 4);
   std::vector<double> distances;
   for (Vec3d& p : mesh.positions) {
     distances.push_back(p[2] > 0.001 ? 0.001 : 0);

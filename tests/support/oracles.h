@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/layers/cells/measure_cells.h"
+#include "products/cells/measure_cells.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset::test {

@@ -5,13 +5,11 @@
 
 namespace vdb_offset::test {
 
-std::string command_path() { return COMMAND; }
+std::string command_path() { return BUILD "/vdb_offset"; }
 
-#ifdef CAD_MODELS
-std::string cad_models_path() { return CAD_MODELS; }
-#endif
+std::string cad_models_path() { return BUILD "/tests/vdb_offset_cad_models"; }
 
-std::string modules_path() { return MODULES; }
+std::string modules_path() { return BUILD; }
 
 std::string scenes_path() { return SCENES; }
 

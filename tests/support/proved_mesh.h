@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "support/oracles.h"
-#include "vdb_offset/proof/offset_prover.h"
+#include "valid/proof/offset_prover.h"
 
 namespace vdb_offset::test {
 

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "support/solids.h"
-#include "vdb_offset/scene.h"
+#include "vdb_offset/shapes.h"
 
 namespace vdb_offset::test {
 namespace {
@@ -48,26 +48,26 @@ Polygons random_shape(Dice& dice, bool& closed) {
   closed = kind < 7 || kind > 10;
   switch (kind) {
     case 0:
-      return scene::box(Vec3d(1, dice.between(0.05, 1), dice.between(0.2, 2)), 3 + dice.pick(8), dice.pick(2) == 0);
+      return shapes::box(Vec3d(1, dice.between(0.05, 1), dice.between(0.2, 2)), 3 + dice.pick(8), dice.pick(2) == 0);
     case 1:
-      return scene::torus(1, dice.between(0.1, 0.6), 12 + dice.pick(30), 6 + dice.pick(14));
+      return shapes::torus(1, dice.between(0.1, 0.6), 12 + dice.pick(30), 6 + dice.pick(14));
     case 2:
-      return scene::bumpy_sphere(1, dice.between(0.1, 0.6), dice.between(1, 4), static_cast<unsigned>(dice.pick(1000)),
-                                 3);
+      return shapes::bumpy_sphere(1, dice.between(0.1, 0.6), dice.between(1, 4), static_cast<unsigned>(dice.pick(1000)),
+                                  3);
     case 3:
-      return scene::gear(5 + dice.pick(10), 0.7, dice.between(0.8, 1.2), 0.3, dice.between(0.05, 0.5), 2);
+      return shapes::gear(5 + dice.pick(10), 0.7, dice.between(0.8, 1.2), 0.3, dice.between(0.05, 0.5), 2);
     case 4:
-      return scene::hollow_box(1, dice.between(0.02, 0.3), 4 + dice.pick(5));
+      return shapes::hollow_box(1, dice.between(0.02, 0.3), 4 + dice.pick(5));
     case 5:
-      return scene::plates(1, dice.between(0.02, 0.3), dice.between(0.005, 0.3), 4 + dice.pick(8));
+      return shapes::plates(1, dice.between(0.02, 0.3), dice.between(0.005, 0.3), 4 + dice.pick(8));
     case 6:
-      return scene::cylinder(dice.between(0.1, 1), 1, 8 + dice.pick(20), 3 + dice.pick(5), 2 + dice.pick(3));
+      return shapes::cylinder(dice.between(0.1, 1), 1, 8 + dice.pick(20), 3 + dice.pick(5), 2 + dice.pick(3));
     case 7:
-      return scene::patch(1, dice.between(0, 0.3), 6 + dice.pick(12));
+      return shapes::patch(1, dice.between(0, 0.3), 6 + dice.pick(12));
     case 8:
-      return scene::wedge(dice.between(20, 160), 1, 1, 4 + dice.pick(8));
+      return shapes::wedge(dice.between(20, 160), 1, 1, 4 + dice.pick(8));
     case 9:
-      return scene::diffuser(dice.between(0.2, 0.6), dice.between(0.6, 1.2), 1, 5 + dice.pick(10));
+      return shapes::diffuser(dice.between(0.2, 0.6), dice.between(0.6, 1.2), 1, 5 + dice.pick(10));
     case 10:
       return nose_strip(dice.between(0.1, 1), dice.between(0.3, 1), dice.between(1.2, 2.5), dice.between(1, 20), 40);
     case 11:
@@ -95,7 +95,7 @@ Seeds random_seeds(unsigned count) {
 Polygons crumpled_box(unsigned seed) {
   constexpr int kDivisions = 4;
   constexpr double kMost = 0.9 / kDivisions;
-  Polygons mesh = scene::box(Vec3d(1), kDivisions, true);
+  Polygons mesh = shapes::box(Vec3d(1), kDivisions, true);
   Dice dice(seed);
   for (Vec3d& p : mesh.positions)
     for (int k = 0; k < 3; ++k) p[k] += dice.between(-kMost, kMost);

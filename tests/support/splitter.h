@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_offset/base/rounding.h"
+#include "ground/numbers/rounding.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/refinement.h"
 

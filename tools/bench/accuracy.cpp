@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "vdb_offset/offset.h"
-#include "vdb_offset/scene.h"
+#include "vdb_offset/shapes.h"
 
 namespace vdb_offset {
 namespace {
@@ -51,7 +51,7 @@ int main() {
   using namespace vdb_offset;
   fmt::print("| shape | d | h | reached | L∞ of position | L2 of position | worst error of distance | seconds |\n");
   fmt::print("|---|---|---|---|---|---|---|---|\n");
-  const Polygons sphere = scene::icosphere(0.5, 6), cube = scene::box(Vec3d(0.5), 83, true);
+  const Polygons sphere = shapes::icosphere(0.5, 6), cube = shapes::box(Vec3d(0.5), 83, true);
   for (const double distance : {0.1, -0.1})
     for (const double h : {0.05, 0.025, 0.0125})
       print("icosphere, 40,962 vertices", distance, h,

@@ -17,17 +17,17 @@
 #include <random>
 #include <span>
 
-#include "vdb_offset/base/memory.h"
+#include "ground/mesh/triangulate.h"
+#include "ground/system/memory.h"
+#include "space/field/direction_field.h"
+#include "space/field/rasterise.h"
+#include "space/field/sweep.h"
+#include "space/query/closest_query.h"
 #include "vdb_offset/error.h"
-#include "vdb_offset/field/direction_field.h"
-#include "vdb_offset/field/rasterise.h"
-#include "vdb_offset/field/sweep.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/mesh/triangulate.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/openmesh.h"
 #include "vdb_offset/output_files.h"
-#include "vdb_offset/query/closest_query.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::bench {

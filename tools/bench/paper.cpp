@@ -14,13 +14,13 @@
 #include <numbers>
 #include <string_view>
 
-#include "vdb_offset/curve/ribbon.h"
+#include "space/curve/ribbon.h"
+#include "space/field/direction_field.h"
+#include "space/field/rasterise.h"
+#include "space/field/sweep.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/field/direction_field.h"
-#include "vdb_offset/field/rasterise.h"
-#include "vdb_offset/field/sweep.h"
 #include "vdb_offset/offset.h"
-#include "vdb_offset/scene.h"
+#include "vdb_offset/shapes.h"
 
 namespace vdb_offset {
 namespace {
@@ -233,7 +233,7 @@ void print_circle(int n) {
 }
 
 void cube_tables(int finest) {
-  const Polygons cube = scene::box(Vec3d(0.5), 83, true);
+  const Polygons cube = shapes::box(Vec3d(0.5), 83, true);
   const Answer answer = [](const Vec3d& x) {
     return Vec3d(std::clamp(x[0], -0.15, 0.15), std::clamp(x[1], -0.15, 0.15), std::clamp(x[2], -0.15, 0.15));
   };

@@ -25,6 +25,7 @@
 #include "vdb_offset/check.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/curves.h"
+#include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/curve_file.h"
@@ -32,7 +33,6 @@
 #include "vdb_offset/io/states_file.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -215,10 +215,10 @@ io::InTriangles find_in_offset(const Request& made, const io::MeshFile& source_f
                       : ""));
 }
 
-std::optional<double> parse_distance(const std::string& text, PolygonView source) {
+std::optional<double> given_distance(const std::string& text, PolygonView source) {
   if (text.empty()) return std::nullopt;
   try {
-    const scene::Distance distance = scene::parse_distance(text);
+    const GivenDistance distance = parse_distance(text);
     return distance.in_world_units(distance.percent ? used_diagonal(source) : 0);
   } catch (const InvalidInput& error) {
     throw UsageError(std::string("--") + error.what());
@@ -308,7 +308,7 @@ CheckResult measure_curves(const CheckRequest& request) {
   options.corners = made.corners.value_or(Corners::Round);
   options.miter_limit = made.miter_limit.value_or(options.miter_limit);
   options.precision = io::precision_of_curves(made.output, source, made.write);
-  if (const auto distance = parse_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
+  if (const auto distance = given_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
   CheckResult result = check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
   write_findings(made, source.file.polygons.view(), offset.file.polygons.positions, result, {{}, nullptr, true});
   return result;

@@ -22,7 +22,7 @@ namespace {
 void require_valid(const IsoStatistics& found) {
   if (found.valid()) return;
   throw Error(fmt::format(
-      "capture: expected a closed, manifold surface that does not cross itself, got {} border edges, {} non-manifold "
+      "iso-surface: expected a closed, manifold surface that does not cross itself, got {} border edges, {} non-manifold "
       "edges, {} pinched vertices, {} crossings and {} triangles without area on each of {} lattices (try another "
       "--voxel-size, or more digits)",
       found.border_edges, found.non_manifold_edges, found.pinched_vertices, found.mending.left.crossings,

@@ -61,13 +61,13 @@ void settle_scene(Job& job) {
   if (job.request.layers || !job.asked.empty()) return;
   job.expect = scene.expect;
   if (scene.to_fit.face_count() > 0) return settle_fit_of_scene(job);
-  const scene::Distance& own = scene.distance;
+  const GivenDistance& own = scene.distance;
   job.asked.push_back(
       {own.expression ? own.expression->text() : fmt::format("{}{}", own.value, own.percent ? "%" : ""), own, {}});
 }
 
 double clearance_of(const Job& job) {
-  const scene::Distance& clearance = job.request.clearance;
+  const GivenDistance& clearance = job.request.clearance;
   return clearance.in_world_units(clearance.percent ? used_diagonal(job.source.view()) : 0);
 }
 

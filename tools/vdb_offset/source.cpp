@@ -67,7 +67,7 @@ io::CadReading cad_reading(const Request& request) {
   io::CadReading how;
   how.angle_degrees = request.angle;
   how.seconds = request.cad_seconds;
-  const auto take = [&how](const scene::Distance& length, double factor) {
+  const auto take = [&how](const GivenDistance& length, double factor) {
     const double value = std::abs(length.value) * factor;
     how.deflection = length.percent ? 0 : value;
     if (length.percent) how.deflection_share = value / 100;
@@ -84,9 +84,9 @@ io::CadReading cad_reading(const Request& request) {
   if (request.inner) asked.push_back(&*request.inner);
   if (request.layers && request.layers->first) asked.push_back(&*request.layers->first);
   if (request.layers && request.layers->total) asked.push_back(&*request.layers->total);
-  const scene::Distance* least = nullptr;
+  const GivenDistance* least = nullptr;
   for (const DistanceRequest* each : asked) {
-    const scene::Distance& one = each->distance;
+    const GivenDistance& one = each->distance;
     if (!each->from.empty() || one.expression || one.value == 0) continue;
     // A length and a percentage are not compared: the first of them counts.
     if (!least || (one.percent == least->percent && std::abs(one.value) < std::abs(least->value))) least = &one;

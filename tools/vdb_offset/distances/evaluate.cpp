@@ -45,7 +45,7 @@ Distances evaluate(const Job& job, const DistanceRequest& request) {
     return source.curves ? curve_normals(source.view())
                          : vertex_normals(source.view(), job.options.weld, job.options.orient);
   };
-  return scene::distances_of(request.distance, source.view(), normals_of, texture_of);
+  return distances_of(request.distance, source.view(), normals_of, texture_of);
 }
 
 Distances scaled(const Distances& distances, double factor) {

@@ -42,7 +42,7 @@ bool uses_texture(const DistanceRequest& rule) {
 }
 
 double blend_of(const Job& job) {
-  const scene::Distance& blend = job.request.blend;
+  const GivenDistance& blend = job.request.blend;
   return blend.in_world_units(blend.percent ? used_diagonal(job.source.view()) : 0);
 }
 

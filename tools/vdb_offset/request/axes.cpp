@@ -10,7 +10,6 @@
 #include "vdb_offset/error.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -19,15 +18,15 @@ namespace {
 // rounding of the larger one. Not measured.
 constexpr double kMostRatio = 1000;
 
-scene::Distance parse_one(const char* option, const std::string& text) {
+GivenDistance parse_one(const char* option, const std::string& text) {
   try {
-    return scene::parse_distance(text);
+    return parse_distance(text);
   } catch (const InvalidInput&) {
     throw UsageError(fmt::format("{}: expected a number of world units or percent, got '{}'", option, text));
   }
 }
 
-scene::Distance least_beside(scene::Distance other) {
+GivenDistance least_beside(GivenDistance other) {
   other.value /= kMostRatio;
   return other;
 }

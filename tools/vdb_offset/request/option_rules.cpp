@@ -109,7 +109,8 @@ void require_for_mesh(const Request& request) {
   require(!is_vdb || (request.iso && !request.shell),
           request.output + ": expected --mode iso, without --shell, as a level set is written of that surface alone");
   const auto is_from_vdb = [&](const std::string& path) { return format_of(path, request) == io::Format::Vdb; };
-  require(is_from_vdb(request.input) || is_from_vdb(request.fit) || std::ranges::any_of(request.obstacles, is_from_vdb) ||
+  require(is_from_vdb(request.input) || is_from_vdb(request.fit) ||
+              std::ranges::any_of(request.obstacles, is_from_vdb) ||
               (request.level_set.grid.empty() && !request.level_set.isovalue),
           "--grid and --isovalue: expected an input, an obstacle or a --fit that ends in .vdb");
   require(volume || format_of(request.output, request).has_value(),

@@ -66,7 +66,7 @@ DistanceRequest parse_distance_request(const std::string& text) {
     if (text.size() == 1) throw InvalidOption("expected a file's name behind the '@'");
     return {text.substr(1), {}, text.substr(1)};
   }
-  return {text, scene::parse_distance_or_expression(text), {}};
+  return {text, parse_distance_or_expression(text), {}};
 }
 
 DistanceRequest parse_distance_of(const char* option, const std::string& text, const Request& request) {
@@ -177,10 +177,10 @@ Tolerance parse_tolerance(const std::string& text) {
   return tolerance;
 }
 
-scene::Distance parse_clearance(const std::string& text) {
-  scene::Distance clearance;
+GivenDistance parse_clearance(const std::string& text) {
+  GivenDistance clearance;
   try {
-    clearance = scene::parse_distance(text);
+    clearance = parse_distance(text);
   } catch (const InvalidInput&) {
     clearance.value = -1;
   }
@@ -192,10 +192,10 @@ scene::Distance parse_clearance(const std::string& text) {
 namespace {
 
 /// A length above 0, or a percentage.
-scene::Distance parse_fineness(const char* option, const std::string& text) {
-  scene::Distance fineness;
+GivenDistance parse_fineness(const char* option, const std::string& text) {
+  GivenDistance fineness;
   try {
-    fineness = scene::parse_distance(text);
+    fineness = parse_distance(text);
   } catch (const InvalidInput&) {
     fineness.value = 0;
   }
@@ -206,11 +206,11 @@ scene::Distance parse_fineness(const char* option, const std::string& text) {
 
 }  // namespace
 
-scene::Distance parse_flatten(const std::string& text) { return parse_fineness("--flatten", text); }
+GivenDistance parse_flatten(const std::string& text) { return parse_fineness("--flatten", text); }
 
-scene::Distance parse_blend(const std::string& text) { return parse_fineness("--blend", text); }
+GivenDistance parse_blend(const std::string& text) { return parse_fineness("--blend", text); }
 
-scene::Distance parse_deflection(const std::string& text) { return parse_fineness("--deflection", text); }
+GivenDistance parse_deflection(const std::string& text) { return parse_fineness("--deflection", text); }
 
 WeldOptions parse_weld(const std::string& text) {
   WeldOptions weld;

@@ -58,9 +58,9 @@ std::optional<AxisDistances> parse_axes(const std::string& xy, const std::string
 std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mesh);
 
 /// --deflection: a length above 0, or a percentage.
-scene::Distance parse_deflection(const std::string& text);
+GivenDistance parse_deflection(const std::string& text);
 /// --blend: a length above 0, or a percentage.
-scene::Distance parse_blend(const std::string& text);
+GivenDistance parse_blend(const std::string& text);
 /// group=NAME, material=NAME, faces=FILE, and of CAD models face=N, name=NAME or color=RRGGBB.
 io::Selector parse_part(const char* option, const std::string& text);
 
@@ -79,10 +79,10 @@ double parse_strict_faces(const std::string& text);
 Tolerance parse_tolerance(const std::string& text);
 
 /// World units or percent, 0 or more.
-scene::Distance parse_clearance(const std::string& text);
+GivenDistance parse_clearance(const std::string& text);
 
 /// World units or percent, above 0.
-scene::Distance parse_flatten(const std::string& text);
+GivenDistance parse_flatten(const std::string& text);
 
 /// 'auto', 'exact', 'none' or a tolerance.
 WeldOptions parse_weld(const std::string& text);

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/distances.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/iso_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/output_files.h"
-#include "vdb_offset/scene.h"
 #include "vdb_offset/tolerance.h"
 
 namespace vdb_offset::tool {
@@ -25,7 +25,7 @@ struct UsageError : Error {
 /// One distance that is asked for, and how.
 struct DistanceRequest {
   std::string text;
-  scene::Distance distance;
+  GivenDistance distance;
   std::string from;  ///< Then each vertex's own: a file of numbers, or ply:NAME or vtk:NAME, a property of the input.
 };
 
@@ -37,7 +37,7 @@ struct PartDistance {
 
 /// Distances in the plane of x and y and along z, of one sign.
 struct AxisDistances {
-  scene::Distance xy, z;
+  GivenDistance xy, z;
 };
 
 /// Layers of cells that are asked for: their count and growth with the first height or the thickness of all, or a file
@@ -73,7 +73,7 @@ struct Request {
   std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own, and for layers.
   const char* distance_option = "--distance";  ///< The option that they were given with.
   std::vector<PartDistance> distances_of;      ///< Of parts; where several name a face, the last counts.
-  scene::Distance blend;                       ///< Over how far distances of parts change into each other; 0: not.
+  GivenDistance blend;                         ///< Over how far distances of parts change into each other; 0: not.
   std::optional<AxisDistances> axes;           ///< Then the only distance is that in the plane.
   std::optional<DistanceRequest> inner;        ///< The distance of a shell's inner skin, above 0.
   std::string fit;                             ///< Another mesh that INPUT is to keep the clearance from; empty: none.
@@ -84,7 +84,7 @@ struct Request {
 
   std::vector<io::Selector> only;
   std::vector<std::string> obstacles;
-  scene::Distance clearance;
+  GivenDistance clearance;
   SymmetryOptions symmetry;
 
   // Without a value, a scene's own counts.
@@ -97,16 +97,16 @@ struct Request {
   GridOptions grid;
   WeldOptions weld = WeldOptions::automatic();
   Orient orient = Orient::Keep;
-  int threads = 0;                            ///< 0: all.
-  std::size_t max_memory = 0;                 ///< Bytes.
-  bool close = false;                         ///< Join ends of curves that are near each other.
-  io::VdbReading level_set;                   ///< Which surface of an OpenVDB file is the mesh.
-  std::optional<scene::Distance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
-  double fit_tolerance = 0;                   ///< Of written CAD models, world units; 0: 1e-4 distances.
-  bool faceted = false;                       ///< Write a CAD model of triangles where no other can be made.
-  bool cuts = false;                          ///< --collision cut: of an output that is a CAD model.
-  double angle = 15, cad_seconds = 300;       ///< Of CAD models: degrees, and how long reading may take.
-  std::optional<scene::Distance> flatten;     ///< How far straight segments may be from curved ones; none: the default.
+  int threads = 0;                          ///< 0: all.
+  std::size_t max_memory = 0;               ///< Bytes.
+  bool close = false;                       ///< Join ends of curves that are near each other.
+  io::VdbReading level_set;                 ///< Which surface of an OpenVDB file is the mesh.
+  std::optional<GivenDistance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
+  double fit_tolerance = 0;                 ///< Of written CAD models, world units; 0: 1e-4 distances.
+  bool faceted = false;                     ///< Write a CAD model of triangles where no other can be made.
+  bool cuts = false;                        ///< --collision cut: of an output that is a CAD model.
+  double angle = 15, cad_seconds = 300;     ///< Of CAD models: degrees, and how long reading may take.
+  std::optional<GivenDistance> flatten;     ///< How far straight segments may be from curved ones; none: the default.
 
   std::string unit;  ///< Of the file's numbers; empty: not said.
   // Texts as given, for the report.

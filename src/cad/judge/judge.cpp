@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "judge/judge.h"
+
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepGProp.hxx>
+#include <BRepLib.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "judge/edge_points.h"
+#include "judge/soup.h"
+#include "offset/offset_surface.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+// Farthest that a mitre may reach, in distances: edges of 10 degrees.
+constexpr double kLongestMitre = 12;
+
+// The angle of faces that do not touch.
+constexpr double kSharp = 0.02;
+
+// How far from a sharp edge its mitre is looked for over other faces.
+constexpr double kMitreOverFace = 3;
+
+// Points that are held against the exact shape where its tessellation leaves doubt. More doubt than that is none.
+constexpr int kMostDoubts = 300;
+
+// Numbers in [0, 1) that are the same on every machine (splitmix64).
+class Numbers {
+ public:
+  double next() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
+std::string text_of(const gp_Pnt& p) { return number(p.X()) + " " + number(p.Y()) + " " + number(p.Z()); }
+
+// Which faces a point lies on and over.
+std::string place_of(const Soup& source, const SoupPoint& foot, const Soup& result, const SoupPoint& p) {
+  return " on face " + std::to_string(result.triangles()[p.triangle].face + 1) + " over the source's face " +
+         std::to_string(source.triangles()[foot.triangle].face + 1);
+}
+
+// Points spread over a soup by area: a stratified choice of triangles.
+std::vector<SoupPoint> spread(const Soup& soup, int count) {
+  std::vector<double> sums = {0};
+  for (const Soup::Triangle& t : soup.triangles())
+    sums.push_back(sums.back() +
+                   gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2])).Magnitude());
+  std::vector<SoupPoint> points;
+  Numbers numbers;
+  std::size_t at = 0;
+  for (int i = 0; i < count; i++) {
+    const double area = sums.back() * (i + numbers.next()) / count;
+    while (at + 2 < sums.size() && sums[at + 1] <= area) at++;
+    const double a = numbers.next(), b = numbers.next();
+    points.push_back(soup.on_triangle(static_cast<int>(at), a, b));
+  }
+  // Small faces too: one point in every face's largest triangle.
+  std::vector<int> largest(soup.faces().size(), -1);
+  for (std::size_t t = 0; t + 1 < sums.size(); t++) {
+    int& best = largest[soup.triangles()[t].face];
+    if (best < 0 || sums[t + 1] - sums[t] > sums[best + 1] - sums[best]) best = static_cast<int>(t);
+  }
+  for (int t : largest)
+    if (t >= 0) points.push_back(soup.on_triangle(t, 1.0 / 3, 1.0 / 3));
+  return points;
+}
+
+struct Counts {
+  int solids = 0, shells = 0, open = 0;
+};
+
+Counts counts_of(const TopoDS_Shape& s) {
+  Counts c;
+  for (TopExp_Explorer e(s, TopAbs_SOLID); e.More(); e.Next()) c.solids++;
+  for (TopExp_Explorer e(s, TopAbs_SHELL); e.More(); e.Next()) {
+    c.shells++;
+    if (!BRep_Tool::IsClosed(e.Current())) c.open++;
+  }
+  return c;
+}
+
+// How much nearer than the distance a tessellation may make a point seem.
+constexpr double kDoubtful = 0.1;
+constexpr double kBeyondDoubt = 0.2;     // of the scale, twice what the source's triangles may be off
+constexpr double kNoVolume = 1e-9;       // of the source's
+constexpr double kMostVolumeOff = 1e-3;  // of a volume, as it is found by numbers
+
+// How far beside triangles it is counted how often the result goes round, in distances; and the most triangles that are
+// counted for it, for all points together.
+constexpr double kBeside = 1e-5;
+constexpr std::size_t kMostTurns = 20000000;
+
+// Without solids: a point in one is at no distance from it.
+TopoDS_Shape faces_of(const TopoDS_Shape& shape) {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) BRep_Builder().Add(all, e.Current());
+  return all;
+}
+
+// The edges of a shape where its faces do not touch.
+TopoDS_Shape sharp_edges_of(const TopoDS_Shape& shape) {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  TopTools_IndexedDataMapOfShapeListOfShape faces;
+  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces);
+  for (int i = 1; i <= faces.Extent(); i++) {
+    const TopoDS_Edge& e = TopoDS::Edge(faces.FindKey(i));
+    if (BRep_Tool::Degenerated(e) || faces(i).Extent() < 2) continue;
+    const TopoDS_Face &a = TopoDS::Face(faces(i).First()), &b = TopoDS::Face(faces(i).Last());
+    if (!a.IsSame(b) && BRepLib::ContinuityOfFaces(e, a, b, kSharp) == GeomAbs_C0) BRep_Builder().Add(all, e);
+  }
+  return all;
+}
+
+bool is_along(const gp_Vec& way, const gp_Vec& normal) {
+  return way.Crossed(normal).Magnitude() < 0.02 * way.Magnitude() * normal.Magnitude();
+}
+
+// The distance by the exact geometry, and whether it is to the inside of a face: along its normal.
+double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point, bool& is_inside, double otherwise) {
+  BRepExtrema_DistShapeShape d(BRepBuilderAPI_MakeVertex(point).Vertex(), shape);
+  is_inside = false;
+  if (!d.IsDone()) return otherwise;
+  for (int i = 1; i <= d.NbSolution(); i++) {
+    if (d.SupportTypeShape2(i) != BRepExtrema_IsInFace) continue;
+    double u, v;
+    d.ParOnFaceS2(i, u, v);
+    gp_Pnt foot;
+    gp_Vec du, dv;
+    surface_of(TopoDS::Face(d.SupportOnShape2(i)))->D1(u, v, foot, du, dv);
+    is_inside = is_inside || is_along(gp_Vec(foot, point), du.Crossed(dv));
+  }
+  return d.Value();
+}
+
+double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point) {
+  bool is_inside;
+  return exact_distance(shape, point, is_inside, 0);
+}
+
+class Judge {
+ public:
+  Judge(const TopoDS_Shape& source, const TopoDS_Shape& made, const TopoDS_Shape& result, const AskedDistance& asked,
+        const JudgeOptions& options)
+      : source_(source),
+        made_(made),
+        result_(result),
+        source_faces_(faces_of(source)),
+        result_faces_(faces_of(result)),
+        asked_(asked),
+        distance_(asked.outward - asked.inward),
+        far_(asked.scale),
+        mitred_(sharp_edges_of(source), kMitreOverFace * far_),
+        options_(options) {}
+
+  Verdict judge() {
+    check_topology();
+    if (is_closed_) check_turned_round();
+    if (!verdict_.faults.empty()) return verdict_;
+    const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.02 * far_, 0.3);
+    if (!result.is_complete()) fault("a face has no triangles");
+    if (result.triangles().empty()) return verdict_;
+    // Valid by its tolerances, a wire may still be open in (u, v): who makes triangles of the face leaves some out.
+    if (const std::size_t open = result.open_sides(); is_closed_ && open > 0)
+      fault("triangles of the result are open at " + std::to_string(open) + " sides");
+    verdict_.volume = result.volume();
+    if (is_closed_ && verdict_.volume >= 0 && verdict_.volume < kNoVolume * std::abs(source.volume()))
+      fault("the result encloses nothing");
+    if (is_closed_ && verdict_.volume < 0) fault("the result is turned inside out");
+    if (asked_.is_even) {
+      if (is_closed_ && (verdict_.volume > source.volume()) != (distance_ > 0))
+        fault("the volume is not on the right side");
+      check_points(source, result);
+      check_cover(source, result);
+    } else if (is_closed_ && asked_.has_one_side()) {
+      check_side(source, result);
+    }
+    if (is_closed_) check_turns(result);
+    if (crosses(result) && crosses(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2))) fault("the result crosses itself");
+    return verdict_;
+  }
+
+ private:
+  void fault(const std::string& text) {
+    verdict_.is_good = false;
+    verdict_.faults.push_back(text);
+  }
+
+  void check_topology() {
+    if (!BRepCheck_Analyzer(result_).IsValid()) fault("the topology is not valid");
+    const Counts was = counts_of(source_), is = counts_of(result_);
+    if (is.solids != was.solids) fault(std::to_string(is.solids) + " solids in place of " + std::to_string(was.solids));
+    if (is.shells != was.shells) fault(std::to_string(is.shells) + " shells in place of " + std::to_string(was.shells));
+    if (is.open > was.open) fault(std::to_string(is.open) + " shells are open");
+    is_closed_ = was.open == 0;
+  }
+
+  // Walls that have passed each other by less than triangles tell: who reads the file takes the inner shell for the
+  // outer one.
+  void check_turned_round() {
+    const double was = volume_of(source_), made = volume_of(made_), is = volume_of(result_);
+    if (made * was < 0) fault("walls are gone: the result is turned inside out");
+    if (std::abs(std::abs(made) - std::abs(is)) > kMostVolumeOff * std::max(std::abs(made), std::abs(is)))
+      fault("walls are gone: who reads the result turns a part of it round");
+  }
+
+  // Of an offset to one side alone: whether points are on that side of the source, or near to it, where triangles leave
+  // doubt, as what stays is.
+  void check_side(const Soup& source, const Soup& result) {
+    const std::vector<SoupPoint> points = spread(result, options_.samples / 10);
+    const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / kMostTurns);
+    for (std::size_t i = 0; i < points.size(); i += every) {
+      const gp_Pnt& point = points[i].point;
+      if (source.contains(point) == (asked_.inward > 0)) continue;
+      if (source.closest(point).distance <= kBeyondDoubt * far_) continue;
+      fault("walls are gone: points are on the wrong side, as at " + text_of(point) + " on face " +
+            std::to_string(result.triangles()[points[i].triangle].face + 1));
+      return;
+    }
+  }
+
+  void check_points(const Soup& source, const Soup& result) {
+    const std::vector<SoupPoint> points = spread(result, options_.samples);
+    verdict_.samples = points.size();
+    int near = 0, far = 0, doubts = 0, wrong_side = 0, n = 0;
+    std::string place;
+    verdict_.least = 1e300;
+    const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / 40000000);
+    for (const SoupPoint& p : points) {
+      SoupPoint foot = source.closest(p.point);
+      double share = foot.distance / far_;
+      // Beyond a sharp edge its mitre may lie over the inside of a third face: of much of a thin wall's two sides.
+      const auto is_mitred = [&] { return share > 1 + options_.tolerance && mitred_.has_near(p.point); };
+      foot.is_inside = foot.is_inside && !is_mitred();
+      if ((share < 1 - options_.tolerance || (foot.is_inside && share > 1 + options_.tolerance)) &&
+          share > 1 - kDoubtful && doubts++ < kMostDoubts) {
+        share = exact_distance(source_faces_, p.point, foot.is_inside, foot.distance) / far_;
+        foot.is_inside = foot.is_inside && !is_mitred();
+      }
+      verdict_.least = std::min(verdict_.least, share);
+      verdict_.most = std::max(verdict_.most, share);
+      if (share < 1 - options_.tolerance && near++ == 0) place = text_of(p.point) + place_of(source, foot, result, p);
+      if (share > (foot.is_inside ? 1 + options_.tolerance : kLongestMitre) && far++ == 0)
+        place = text_of(p.point) + place_of(source, foot, result, p);
+      const gp_Vec to(foot.point, p.point), out = source.outside(foot);
+      if (foot.is_inside && (to.Dot(out) > 0) != (distance_ > 0)) wrong_side++;
+      if (is_closed_ && n++ % every == 0 && source.contains(p.point) != (distance_ < 0)) wrong_side++;
+    }
+    if (near)
+      fault(std::to_string(near) + " points are nearer than the distance (least " + number(verdict_.least) +
+            ") as at " + place);
+    if (far)
+      fault(std::to_string(far) + " points are farther than the distance (most " + number(verdict_.most) + ") as at " +
+            place);
+    if (wrong_side) fault(std::to_string(wrong_side) + " points are on the wrong side");
+  }
+
+  // Faces that lie in what others enclose cross none of them where they end on each other: just outside of a face there
+  // is nothing, and just inside of it material, once.
+  void check_turns(const Soup& result) {
+    const std::vector<SoupPoint> points = spread(result, options_.samples / 10);
+    const std::size_t every = std::max<std::size_t>(1, points.size() * result.triangles().size() / kMostTurns);
+    const auto is_other = [](double turns, double expected) {
+      // Between whole numbers triangles have gaps, or miss each other, which is told elsewhere.
+      return std::abs(turns - std::round(turns)) < 0.05 && std::round(turns) != expected;
+    };
+    for (std::size_t i = 0; i < points.size(); i += every) {
+      const auto& [a, b, c] = result.triangles()[points[i].triangle].points;
+      const gp_Vec across = gp_Vec(a, b).Crossed(gp_Vec(a, c));
+      const gp_Pnt middle((a.XYZ() + b.XYZ() + c.XYZ()) / 3);
+      if (across.Magnitude() < 1e-6 * far_ * far_) continue;
+      const gp_Vec out = across.Normalized() * (kBeside * far_);
+      if (!is_other(result.turns(middle.Translated(out)), 0) && !is_other(result.turns(middle.Translated(-out)), 1))
+        continue;
+      fault("a face lies within others, or is turned, as at " + text_of(middle) + " on face " +
+            std::to_string(result.triangles()[points[i].triangle].face + 1));
+      return;
+    }
+  }
+
+  // Whether triangles cross, but at edges whose faces miss each other by as much as the topology tells.
+  bool crosses(const Soup& soup) const {
+    constexpr std::size_t kMostCrossings = 200;
+    for (const gp_Pnt& p : soup.crossings(kMostCrossings)) {
+      bool is_told = false;
+      for (TopExp_Explorer e(result_, TopAbs_EDGE); e.More() && !is_told; e.Next()) {
+        const double tolerance = BRep_Tool::Tolerance(TopoDS::Edge(e.Current()));
+        is_told = tolerance > 1e-4 * far_ && exact_distance(e.Current(), p) < 4 * tolerance + 0.02 * far_;
+      }
+      if (!is_told) return true;
+    }
+    return false;
+  }
+
+  void check_cover(const Soup& source, const Soup& result) {
+    int missing = 0, doubts = 0;
+    double worst = 0;
+    std::string place;
+    for (const SoupPoint& p : spread(source, options_.samples / 2)) {
+      const gp_Pnt moved = p.point.Translated(source.outside(p) * distance_);
+      if (source.closest(moved).distance < far_ * (1 - 1e-3)) continue;
+      const double way = result.closest(moved).distance / far_;
+      if (way > worst) place = text_of(moved) + place_of(source, p, result, result.closest(moved));
+      worst = std::max(worst, way);
+      if (way <= options_.tolerance || mitred_.has_near(moved)) continue;  // A mitre may reach over it.
+      if (doubts++ < kMostDoubts)
+        missing += exact_distance(source_faces_, moved) > far_ * (1 - 1e-3) &&
+                   exact_distance(result_faces_, moved) > far_ * options_.tolerance;
+      else missing++;
+    }
+    if (missing)
+      fault(std::to_string(missing) + " offset points are not in the result (farthest " + number(worst) + ") as at " +
+            place);
+  }
+
+  TopoDS_Shape source_, made_, result_;
+  TopoDS_Shape source_faces_, result_faces_;
+  AskedDistance asked_;
+  double distance_, far_;  // an even one, and the scale
+  EdgePoints mitred_;      // the sharp edges
+  JudgeOptions options_;
+  Verdict verdict_;
+  bool is_closed_ = false;
+};
+
+}  // namespace
+
+double volume_of(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties);
+  return properties.Mass();
+}
+
+Verdict judge_offset(const TopoDS_Shape& source, const TopoDS_Shape& made, const TopoDS_Shape& result,
+                     const AskedDistance& asked, const JudgeOptions& options) {
+  try {
+    return Judge(source, made, result, asked, options).judge();
+  } catch (const Standard_Failure& failure) {
+    Verdict v;
+    v.is_good = false;
+    v.faults.push_back(std::string("judging failed: ") + failure.GetMessageString());
+    return v;
+  }
+}
+
+}  // namespace vdb_offset::cad

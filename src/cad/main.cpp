@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program that reads CAD files by OpenCASCADE. Programs of the project start it, and talk with it by messages
+// (messages/cad_messages.h); by hand it is of no use.
+#include <fcntl.h>
+#include <unistd.h>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
+
+#include <cstdio>
+#include <new>
+
+#include "messages/message_channel.h"
+#include "vdb_offset/version.h"
+#include "worker/guard.h"
+#include "worker/requests.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+constexpr std::uint64_t kMostOfRequest = std::uint64_t{1} << 40;
+
+struct Reply {
+  io::CadReply kind;
+  std::string payload;
+};
+
+const std::string kTooLarge = "expected a CAD file whose model fits into memory, got one that asks for more";
+
+/// OpenCASCADE's own words, on one line.
+std::string in_short(const char* words) {
+  std::string line(words ? words : "");
+  for (char& letter : line)
+    if (static_cast<unsigned char>(letter) < ' ') letter = ' ';
+  constexpr std::size_t kMostLetters = 200;
+  line.resize(std::min(line.size(), kMostLetters));
+  return line.empty() ? "an error without a text" : line;
+}
+
+Reply reply_to(Requests& requests, const io::Message& asked) {
+  try {
+    return {io::CadReply::Done, requests.answer(static_cast<io::CadRequest>(asked.kind), asked.payload)};
+  } catch (const InvalidCad& invalid) {
+    return {io::CadReply::InvalidFile, invalid.what()};
+  } catch (const io::BadMessage& bad) {
+    return {io::CadReply::Failed, bad.what()};
+  } catch (const std::bad_alloc&) {
+    return {io::CadReply::OutOfMemory, kTooLarge};
+  } catch (const std::length_error&) {
+    return {io::CadReply::OutOfMemory, kTooLarge};
+  } catch (const Standard_OutOfMemory&) {
+    return {io::CadReply::OutOfMemory, kTooLarge};
+  } catch (const Standard_Failure& failure) {
+    return {io::CadReply::InvalidFile, std::string("expected a CAD file that OpenCASCADE can read, got: ") +
+                                           failure.DynamicType()->Name() + ": " + in_short(failure.GetMessageString())};
+  } catch (const std::exception& error) {
+    return {io::CadReply::InvalidFile, "expected a CAD file that OpenCASCADE can read, got: " + in_short(error.what())};
+  }
+}
+
+void serve() {
+  io::MessageChannel messages{io::OpenFile(io::kWorkerMessages)};
+  messages.send(static_cast<std::uint32_t>(io::CadReply::Version), VDB_OFFSET_VERSION, {});
+  Requests requests;
+  while (true) {
+    const io::Message asked = messages.receive({}, kMostOfRequest);
+    const Reply reply = reply_to(requests, asked);
+    messages.send(static_cast<std::uint32_t>(reply.kind), reply.payload, {});
+  }
+}
+
+}  // namespace
+}  // namespace vdb_offset::cad
+
+int main(int, char** words) {
+  using namespace vdb_offset;
+  if (::fcntl(io::kWorkerEnd, F_GETFD) < 0 || ::fcntl(io::kWorkerMessages, F_GETFD) < 0) {
+    std::fprintf(stderr, "%s: is started by vdb_offset, for CAD files\n", words[0]);
+    return 1;
+  }
+  ::close_range(io::kWorkerEnd + 1, ~0U, 0);  // what else the program had open
+  cad::start_guard();
+  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+  try {
+    cad::serve();
+  } catch (const io::Hangup&) {
+  } catch (const io::BadMessage&) {
+  }
+  ::_exit(0);  // without giving back what the model is made of, piece by piece
+}

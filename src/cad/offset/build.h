@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <TopoDS_Shape.hxx>
+
+#include "offset/edge_curve.h"
+
+namespace vdb_offset::cad {
+
+struct Built {
+  TopoDS_Shape shell;                ///< Null if an edge has no curve.
+  std::vector<TopoDS_Face> faces;    ///< By the number of the model's face; null for those that are gone.
+  std::vector<std::string> trouble;  ///< What is not as it should be, in words.
+};
+
+/// The shell of a placed model. Splines are cut at poles.
+Built build_shell(Model& model, const Tolerances& tolerances);
+
+}  // namespace vdb_offset::cad

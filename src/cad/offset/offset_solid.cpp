@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "offset/offset_solid.h"
+
+#include <BRep_Builder.hxx>
+#include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "offset/arrange.h"
+#include "offset/build.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
+
+/// A distance along Su x Sv, of one towards the outside.
+FaceDistance towards(const FaceDistance& outside, double sign) {
+  FaceDistance along{sign * outside.constant, {}, outside.detail};
+  if (outside.at) along.at = [at = outside.at, sign](double u, double v) { return sign * at(u, v); };
+  return along;
+}
+
+/// Tells how each face of a model was made, and which face it became; of those from `first` on.
+void tell_faces(const Model& model, const std::vector<TopoDS_Face>& built, std::size_t first, OffsetCadResult& result) {
+  for (std::size_t f = 0; f < model.faces.size(); f++) {
+    if (f < built.size()) result.made_of[first + f] = built[f];
+    if (model.faces[f].is_gone) result.faces[first + f] = CadFace::Swallowed;
+  }
+}
+
+std::size_t count_faces(const TopoDS_Shape& shell) {
+  std::size_t count = 0;
+  for (TopExp_Explorer face(shell, TopAbs_FACE); face.More(); face.Next()) ++count;
+  return count;
+}
+
+OffsetCadResult offset_all(const OffsetCadRequest& request) {
+  OffsetCadResult result;
+  Tolerances tolerances;
+  tolerances.distance = std::abs(request.distance);
+  tolerances.fit = request.fit_tolerance > 0 ? request.fit_tolerance : 1e-4 * tolerances.distance;
+  tolerances.curve = std::max(1e-7, 1e-5 * tolerances.distance);
+  tolerances.gap = 2e-3 * tolerances.distance;
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  std::vector<TopoDS_Shape> pieces;
+  for (TopExp_Explorer s(request.source, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
+  for (TopExp_Explorer s(request.source, TopAbs_SHELL, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
+  for (TopExp_Explorer f(request.source, TopAbs_FACE, TopAbs_SHELL); f.More(); f.Next()) {
+    TopoDS_Shell shell;
+    builder.MakeShell(shell);
+    builder.Add(shell, f.Current());
+    pieces.push_back(shell);
+  }
+  int made = 0;
+  TopoDS_Shape last;
+  for (const TopoDS_Shape& piece : pieces) {
+    std::vector<TopoDS_Shape> shells;
+    for (TopExp_Explorer s(piece, TopAbs_SHELL); s.More(); s.Next()) {
+      Model model = read_model(s.Current(), tolerances.gap / 4);
+      const std::size_t first_face = result.faces.size();
+      if (!model.failure.empty()) {
+        result.gaps.push_back(model.failure);
+        result.faces.resize(first_face + count_faces(s.Current()), CadFace::Missing);
+        result.made_of.resize(result.faces.size());
+        continue;
+      }
+      for (std::size_t f = 0; f < model.faces.size(); f++) {
+        ModelFace& face = model.faces[f];
+        face.distance.constant = face.sign * request.distance;
+        if (!request.of_face.empty()) face.distance = towards(request.of_face[first_face + f], face.sign);
+        face.offset = offset_surface(face.surface, face.box, face.distance, sharp_sides(model, static_cast<int>(f)),
+                                     vertex_margin(request.distance), tolerances.fit);
+        result.fit_error = std::max(result.fit_error, face.offset.error);
+        result.faces.push_back(face.offset.made == FaceMade::Kept     ? CadFace::Kept
+                               : face.offset.made == FaceMade::Fitted ? CadFace::Fitted
+                                                                      : CadFace::Swallowed);
+      }
+      result.made_of.resize(result.faces.size());
+      const std::size_t gaps_before = result.gaps.size();
+      classify_edges(model, tolerances);
+      if (std::any_of(model.edges.begin(), model.edges.end(), [](const ModelEdge& e) { return e.is_step; }))
+        result.gaps.emplace_back("distances of faces that are joined smoothly differ where they meet (--blend)");
+      if (request.keeps_turned) arrange_turned(model, tolerances, result.gaps);
+      else arrange(model, tolerances, result.gaps);
+      result.steps.insert(result.steps.end(), model.steps.begin(), model.steps.end());
+      if (result.gaps.size() > gaps_before) continue;
+      if (std::all_of(model.faces.begin(), model.faces.end(), [](const ModelFace& f) { return f.is_gone; })) {
+        result.gaps.push_back("the shell is swallowed whole");
+        continue;
+      }
+      Built built = build_shell(model, tolerances);
+      result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());
+      tell_faces(model, built.faces, first_face, result);
+      if (!built.shell.IsNull()) shells.push_back(built.shell);
+    }
+    if (shells.empty()) continue;
+    if (piece.ShapeType() == TopAbs_SOLID) {
+      TopoDS_Solid solid;
+      builder.MakeSolid(solid);
+      for (const TopoDS_Shape& s : shells) builder.Add(solid, s);
+      last = solid;
+      result.kind = CadKind::Solid;
+    } else {
+      last = shells.front();
+      result.kind = CadKind::Shells;
+    }
+    builder.Add(all, last);
+    made++;
+  }
+  if (made == 1) result.shape = last;
+  else if (made > 1) result.shape = all;
+  if (!result.gaps.empty()) result.kind = CadKind::Faces;
+  return result;
+}
+
+}  // namespace
+
+OffsetCadResult offset_cad(const OffsetCadRequest& request) {
+  try {
+    return offset_all(request);
+  } catch (const Standard_Failure& failure) {
+    OffsetCadResult result;
+    result.gaps.push_back(std::string("the offset failed: ") + failure.GetMessageString());
+    return result;
+  }
+}
+
+}  // namespace vdb_offset::cad

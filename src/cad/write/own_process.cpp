@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "write/own_process.h"
+
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <Standard_Failure.hxx>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <fstream>
+#include <system_error>
+
+#include "read/cad_model.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+// Of faces that fold over, OpenCASCADE makes triangles without end. Models of 400 faces take a tenth of this.
+constexpr rlim_t kMostMemory = rlim_t{2} << 30;
+constexpr int kFailed = 3;   // an exit code
+#ifdef __SANITIZE_ADDRESS__  // which has terabytes of addresses
+constexpr bool kMayLimit = false;
+#else
+constexpr bool kMayLimit = true;
+#endif
+
+rlim_t addresses() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+MemoryFile::MemoryFile() : descriptor_(::memfd_create("offset", MFD_CLOEXEC)) {
+  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+}
+
+MemoryFile::~MemoryFile() { ::close(descriptor_); }
+
+void MemoryFile::write(std::string_view all) const {
+  while (!all.empty()) {
+    const ssize_t put = ::write(descriptor_, all.data(), all.size());
+    if (put <= 0) throw std::system_error(errno, std::generic_category(), "write");
+    all.remove_prefix(static_cast<std::size_t>(put));
+  }
+}
+
+std::string MemoryFile::bytes() const {
+  struct stat facts {};
+  if (::fstat(descriptor_, &facts) != 0) throw std::system_error(errno, std::generic_category(), "fstat");
+  std::string all(static_cast<std::size_t>(facts.st_size), '\0');
+  for (std::size_t at = 0; at < all.size();) {
+    const ssize_t got = ::pread(descriptor_, all.data() + at, all.size() - at, static_cast<off_t>(at));
+    if (got <= 0) throw std::system_error(errno, std::generic_category(), "pread");
+    at += static_cast<std::size_t>(got);
+  }
+  return all;
+}
+
+void write_apart(const WrittenModel& model, const std::string& format, const std::string& path) {
+  const pid_t child = ::fork();
+  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    try {
+      write_model(model, format, path);
+    } catch (...) {
+      ::_exit(kFailed);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
+  if (status != 0) throw InvalidCad("expected a model that OpenCASCADE can write, got one that it cannot");
+}
+
+std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, unsigned seconds,
+                                             std::string& gap) {
+  const MemoryFile reply;
+  const pid_t child = ::fork();
+  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, addresses() + kMostMemory);
+    if (kMayLimit) ::setrlimit(RLIMIT_AS, &limit);
+    if (seconds > 0) {
+      const rlimit time{seconds, seconds};
+      ::setrlimit(RLIMIT_CPU, &time);
+    }
+    try {
+      reply.write(io::pack(work()));
+    } catch (const Standard_Failure&) {
+      ::_exit(kFailed);
+    } catch (const std::exception&) {
+      ::_exit(kFailed);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
+  if (status == 0) return io::unpack_written(reply.bytes());
+  gap = WIFSIGNALED(status) ? "OpenCASCADE is ended by signal " + std::to_string(WTERMSIG(status)) + " by the result"
+                            : std::string("OpenCASCADE fails with the result");
+  return std::nullopt;
+}
+
+}  // namespace vdb_offset::cad

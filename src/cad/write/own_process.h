@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "messages/cad_messages.h"
+#include "write/write_model.h"
+
+namespace vdb_offset::cad {
+
+/// A file in memory, which has a name for as long as this lives.
+class MemoryFile {
+ public:
+  MemoryFile();
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  void write(std::string_view all) const;
+  std::string bytes() const;
+
+ private:
+  int descriptor_;
+};
+
+/// Writes a file in a process of its own: what OpenCASCADE's writer sets for units, its reader would take for its own.
+void write_apart(const WrittenModel& model, const std::string& format, const std::string& path);
+
+/// Does work in a process of its own, for some seconds of a processor at most unless they are 0. Nothing if that is
+/// ended by a signal or an exception; `gap` then says so.
+std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, unsigned seconds,
+                                             std::string& gap);
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "products/cells/make_cells.h"
+
+#include "ground/numbers/disjoint_sets.h"
+#include "vdb_offset/layer_cells.h"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "ground/system/assert.h"
+#include "ground/system/parallel.h"
+#include "products/layers/column_cells.h"
+
+namespace vdb_offset {
+namespace {
+
+using Index = std::uint32_t;
+
+/// The distance of a vertex in a layer: as measured in the first and the last layer; in between, its height times the
+/// share that it keeps.
+double achieved(const LayersResult& layers, std::size_t layer, Index v) {
+  if (layer == 0) return 0;
+  if (layer == layers.count()) return layers.achieved[v];
+  return layer == 1 ? layers.first_achieved[v] : layers.share[v] * std::abs(layers.heights[layer - 1][v]);
+}
+
+/// Fills in the points and their fields, in blocks whose stacks stay in the cache from layer to layer.
+void fill_points(const LayersResult& layers, const LayerCells& cells, VolumeMesh& volume) {
+  // Points of the wall in a block. For speed alone; not measured.
+  constexpr std::size_t kBlock = 512;
+  const LayerPoints& points = cells.points;
+  volume.point_fields = {{"layer", {}}, {"share", {}}, {"height", {}}, {"achieved", {}}, {"state", {}}};
+  // The first touch of this memory by one thread would take as long as filling it.
+  tbb::parallel_invoke([&] { volume.points.resize(cells.point_count()); },
+                       [&] {
+                         for (VolumeField& field : volume.point_fields) field.values.resize(cells.point_count());
+                       });
+  const auto fill = [&](Index p, std::size_t layer) {
+    const Index at = points.at(p, layer), v = points.vertex[p];
+    volume.points[at] = layers.stacks.of(v)[layer];
+    const double height = layer > 0 ? layers.heights[layer - 1][v] : 0;
+    const double values[] = {static_cast<double>(layer), layers.share[v], height, achieved(layers, layer, v),
+                             static_cast<double>(layers.states[v])};
+    for (std::size_t i = 0; i < std::size(values); ++i)
+      volume.point_fields[i].values[at] = static_cast<float>(values[i]);
+  };
+  for_each_index((points.wall() + kBlock - 1) / kBlock,
+                 [&](std::size_t b) {
+                   const auto begin = static_cast<Index>(b * kBlock),
+                              end = std::min<Index>(points.wall(), begin + kBlock);
+                   for (std::size_t layer = 0; layer <= layers.count(); ++layer)
+                     for (Index p = begin; p < end; ++p)
+                       if (layer == 0 || !points.flat(p)) fill(p, layer);
+                 },
+                 1);
+}
+
+void fill_cells(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, std::size_t layers,
+                VolumeMesh& volume) {
+  const std::size_t cells = columns.cells.back();
+  const std::uint64_t size = columns.size.back();
+  volume.cell_fields = {{"layer", {}}, {"face", {}}, {"patch", {}}};
+  tbb::parallel_invoke([&] { volume.corners.resize(size * layers); },
+                       [&] {
+                         volume.cell_types.resize(cells * layers);
+                         volume.cell_begin.resize(cells * layers + 1);
+                         for (VolumeField& field : volume.cell_fields) field.values.resize(cells * layers);
+                       });
+  for (std::size_t layer = 0; layer < layers; ++layer)
+    for_each_index(columns.count(), [&](std::size_t c) {
+      std::size_t cell = layer * cells + columns.cells[c];
+      std::uint64_t at = layer * size + columns.size[c];
+      const Index face = columns.face[c];
+      const float values[] = {static_cast<float>(layer + 1), static_cast<float>(face),
+                              names.of_face.empty() ? 0.0F : static_cast<float>(names.of_face[face])};
+      ColumnCells(points, columns.ring(c), layer)
+          .visit_cells(
+              [&](CellType type) {
+                for (std::size_t i = 0; i < std::size(values); ++i) volume.cell_fields[i].values[cell] = values[i];
+                volume.cell_begin[cell] = at;
+                volume.cell_types[cell++] = type;
+              },
+              [&](Index corner) { volume.corners[at++] = corner; });
+    });
+  volume.cell_begin.back() = size * layers;
+}
+
+void add_face(std::span<const Index> face, std::size_t cell, BoundaryPatch& patch) {
+  patch.corners.insert(patch.corners.end(), face.begin(), face.end());
+  patch.face_begin.push_back(static_cast<Index>(patch.corners.size()));
+  patch.cell.push_back(static_cast<Index>(cell));
+}
+
+void add_walls(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, VolumeMesh& volume) {
+  for (const std::string& name : patch_names(names)) volume.patches.emplace_back().name = name;
+  std::vector<Index> scratch;
+  for (std::size_t c = 0; c < columns.count(); ++c) {
+    BoundaryPatch& patch = volume.patches[names.of_face.empty() ? 0 : names.of_face[columns.face[c]]];
+    ColumnCells(points, columns.ring(c), 0).visit_below(scratch, [&](std::span<const Index> face, Index cell) {
+      add_face(face, columns.cells[c] + cell, patch);
+    });
+  }
+}
+
+void add_outer(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers, VolumeMesh& volume) {
+  BoundaryPatch& patch = volume.patches.emplace_back();
+  patch.name = "outer";
+  patch.kind = BoundaryPatch::Kind::Outer;
+  patch.corners.reserve(columns.corners.size());
+  patch.face_begin.reserve(columns.cells.back() + 1);
+  patch.cell.reserve(columns.cells.back());
+  const std::size_t below = (layers - 1) * columns.cells.back();
+  std::vector<Index> scratch;
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    ColumnCells(points, columns.ring(c), layers - 1).visit_above(scratch, [&](std::span<const Index> face, Index cell) {
+      add_face(face, below + columns.cells[c] + cell, patch);
+    });
+}
+
+/// A side of a column that is on the boundary.
+struct OpenSide {
+  std::size_t column;
+  Index corner;
+  Index opening = 0;
+};
+
+/// Finds the sides on the boundary, and the opening of the surface that each belongs to: sides with a common point
+/// belong to one. Openings are numbered in the order of columns. Returns their number.
+std::size_t find_openings(const LayerPoints& points, const NumberedColumns& columns, std::vector<OpenSide>& sides) {
+  DisjointSets joined(points.wall());
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    for (Index k = 0; k < columns.ring(c).size(); ++k) {
+      if (columns.open[columns.begin[c] + k] == 0) continue;
+      sides.push_back({c, k});
+      joined.join(columns.ring(c)[k], columns.ring(c)[(k + 1) % columns.ring(c).size()]);
+    }
+  std::vector<Index> number(points.wall(), kNone);
+  std::size_t count = 0;
+  for (OpenSide& side : sides) {
+    Index& opening = number[joined.first(columns.ring(side.column)[side.corner])];
+    if (opening == kNone) opening = static_cast<Index>(count++);
+    side.opening = opening;
+  }
+  return count;
+}
+
+/// Joins all openings but the largest few into the last one. Returns the number of openings.
+std::size_t keep_largest(std::size_t openings, std::vector<OpenSide>& sides) {
+  // The largest number of side patches: a surface that is torn to pieces has thousands of openings, which solvers would
+  // have to be told of one by one. Not measured.
+  constexpr std::size_t kMost = 64;
+  if (openings <= kMost) return openings;
+  std::vector<Index> size(openings, 0), by_size(openings), number(openings, kMost - 1);
+  for (const OpenSide& side : sides) ++size[side.opening];
+  std::iota(by_size.begin(), by_size.end(), 0);
+  std::stable_sort(by_size.begin(), by_size.end(), [&](Index a, Index b) { return size[a] > size[b]; });
+  std::sort(by_size.begin(), by_size.begin() + kMost - 1);
+  for (Index i = 0; i + 1 < kMost; ++i) number[by_size[i]] = i;
+  for (OpenSide& side : sides) side.opening = number[side.opening];
+  return kMost;
+}
+
+/// The name of an opening's patch: "sides", or "sides_1", "sides_2" ... of several, without those that are taken.
+std::string side_name(std::size_t openings, std::set<std::string>& taken) {
+  if (openings == 1) return "sides";
+  for (std::size_t n = 1;; ++n)
+    if (std::string name = "sides_" + std::to_string(n); taken.insert(name).second) return name;
+}
+
+void add_sides(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers, VolumeMesh& volume) {
+  std::vector<OpenSide> sides;
+  const std::size_t openings = keep_largest(find_openings(points, columns, sides), sides);
+  std::set<std::string> taken;
+  for (const BoundaryPatch& patch : volume.patches) taken.insert(patch.name);
+  const std::size_t first = volume.patches.size();
+  for (std::size_t i = 0; i < openings; ++i) {
+    BoundaryPatch& patch = volume.patches.emplace_back();
+    patch.name = side_name(openings, taken);
+    patch.kind = BoundaryPatch::Kind::Side;
+  }
+  for (std::size_t layer = 0; layer < layers; ++layer)
+    for (const auto& [c, k, opening] : sides) {
+      const ColumnCells stack(points, columns.ring(c), layer);
+      std::array<Index, 4> face;
+      const Index size = stack.side(k, face);
+      add_face(std::span(face).first(size), layer * columns.cells.back() + columns.cells[c] + stack.cell_at_side(k),
+               volume.patches[first + opening]);
+    }
+}
+
+void add_patches(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, std::size_t layers,
+                 VolumeMesh& volume) {
+  add_walls(points, columns, names, volume);
+  add_outer(points, columns, layers, volume);
+  add_sides(points, columns, layers, volume);
+}
+
+}  // namespace
+
+VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const WallNames& names,
+                      LayerQuality quality) {
+  VDB_OFFSET_ASSERT(cells.layers == layers.count());
+  VDB_OFFSET_ASSERT(quality.scaled_jacobian.size() == cells.count() && quality.aspect_ratio.size() == cells.count());
+  require_names(names, cells.facts.role.size());
+  VolumeMesh volume;
+  fill_points(layers, cells, volume);
+  tbb::parallel_invoke([&] { fill_cells(cells.points, cells.columns, names, layers.count(), volume); },
+                       [&] {
+                         if (layers.count() > 0)
+                           add_patches(cells.points, cells.columns, names, layers.count(), volume);
+                       });
+  volume.cell_fields.push_back({"scaled_jacobian", std::move(quality.scaled_jacobian)});
+  volume.cell_fields.push_back({"aspect_ratio", std::move(quality.aspect_ratio)});
+  return volume;
+}
+
+VolumeMesh make_cells(PolygonView mesh, const LayersResult& layers, const WallNames& names, LayerCellFacts* facts) {
+  LayerCells cells = number_cells(mesh, layers);
+  VolumeMesh volume = make_cells(layers, cells, names, measure_cells(layers, cells));
+  if (facts != nullptr) *facts = std::move(cells.facts);
+  return volume;
+}
+
+MeasuredCells::MeasuredCells(PolygonView mesh, const LayersResult& layers)
+    : layers_(&layers),
+      cells_(std::make_unique<LayerCells>(number_cells(mesh, layers))),
+      quality_(measure_cells(layers, *cells_)) {}
+
+MeasuredCells::MeasuredCells(MeasuredCells&&) noexcept = default;
+MeasuredCells& MeasuredCells::operator=(MeasuredCells&&) noexcept = default;
+MeasuredCells::~MeasuredCells() = default;
+
+const LayerCellFacts& MeasuredCells::facts() const { return cells_->facts; }
+
+VolumeMesh MeasuredCells::make(const WallNames& names) && {
+  return make_cells(*layers_, *cells_, names, std::move(quality_));
+}
+
+}  // namespace vdb_offset

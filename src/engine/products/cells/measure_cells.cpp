@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "products/cells/measure_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "ground/system/assert.h"
+#include "ground/system/parallel.h"
+#include "products/layers/column_cells.h"
+#include "products/layers/column_mesh.h"
+#include "products/volume/cell_quality.h"
+#include "products/volume/prism_quality_columns.h"
+
+namespace vdb_offset {
+namespace {
+
+using Index = std::uint32_t;
+
+class CellMeasurer {
+ public:
+  CellMeasurer(const LayersResult& layers, const LayerCells& cells) : layers_(layers), cells_(cells) {}
+
+  LayerQuality measure() {
+    result_.points = cells_.point_count();
+    if (cells_.count() == 0) return std::move(result_);
+    result_.types.resize(cells_.in_layer());
+    result_.wall_angle.resize(cells_.in_layer());
+    origin_ = stack(cells_.columns.corners[0])[0];
+    std::vector<float>* const fields[] = {&result_.scaled_jacobian, &result_.aspect_ratio};
+    for_each_index(
+        2, [&](std::size_t i) { fields[i]->resize(cells_.count()); }, 1);
+    const std::size_t columns = cells_.columns.count();
+    std::vector<double> six_volumes((columns + kBlock - 1) / kBlock, 0);
+    for_each_index(
+        six_volumes.size(),
+        [&](std::size_t b) {
+          ColumnMesh column;
+          const std::size_t end = std::min(columns, (b + 1) * kBlock);
+          six_volumes[b] = measure_columns(b * kBlock, end, column);
+        },
+        1);
+    result_.volume = std::accumulate(six_volumes.begin(), six_volumes.end(), 0.0) / 6;
+    return std::move(result_);
+  }
+
+ private:
+  // Columns whose volumes are summed up in order by one thread. For speed alone; not measured.
+  static constexpr std::size_t kBlock = 1024;
+
+  const Vec3d* stack(Index point) const { return layers_.stacks.of(cells_.points.vertex[point]).data(); }
+
+  /// Measures the columns begin .. end - 1. Returns six times the volume of their cells.
+  double measure_columns(std::size_t begin, std::size_t end, ColumnMesh& column) {
+    double six_volumes = 0;
+    while (begin < end) {
+      const std::size_t prisms = begin + PrismQualityColumns::kCount;
+      if (prisms <= end && are_of_prisms(begin, prisms)) {
+        six_volumes += measure_prisms(begin);
+        begin = prisms;
+      } else {
+        six_volumes += measure_column(begin++, column);
+      }
+    }
+    return six_volumes;
+  }
+  bool are_of_prisms(std::size_t begin, std::size_t end) const {
+    while (begin < end && cells_.is_of_prisms(begin)) ++begin;
+    return begin == end;
+  }
+
+  void set(std::size_t layer, std::size_t cell, const CellQuality& quality) {
+    const std::size_t at = layer * cells_.in_layer() + cell;
+    result_.scaled_jacobian[at] = static_cast<float>(quality.jacobian);
+    result_.aspect_ratio[at] = static_cast<float>(quality.aspect);
+  }
+
+  double measure_prisms(std::size_t begin) {
+    const std::size_t first = cells_.columns.cells[begin];
+    PrismQualityColumns columns{.layers = cells_.layers,
+                                .in_layer = cells_.in_layer(),
+                                .scaled_jacobian = result_.scaled_jacobian.data() + first,
+                                .aspect_ratio = result_.aspect_ratio.data() + first,
+                                .wall_angle = result_.wall_angle.data() + first,
+                                .origin = origin_.asPointer()};
+    double sides = 0;
+    for (std::size_t i = 0; i < PrismQualityColumns::kCount; ++i) {
+      const auto ring = cells_.columns.ring(begin + i);
+      for (std::size_t k = 0; k < 3; ++k) columns.stack[k][i] = stack(ring[k])->asPointer();
+      result_.types[first + i] = CellType::Prism;
+      sides += six_volumes_at_sides(begin + i);
+    }
+    const SixVolumes six_volumes = measure_prism_columns(columns);
+    return std::accumulate(six_volumes.begin(), six_volumes.end(), sides);
+  }
+
+  double measure_column(std::size_t c, ColumnMesh& column) {
+    const auto ring = cells_.columns.ring(c);
+    column.begin(ring, [&](Index k) { return cells_.points.flat(ring[k]); });
+    const std::size_t first = cells_.columns.cells[c];
+    std::copy(column.types().begin(), column.types().end(), result_.types.begin() + static_cast<std::ptrdiff_t>(first));
+    std::fill_n(result_.wall_angle.begin() + static_cast<std::ptrdiff_t>(first), column.types().size(),
+                angle_at_wall(ring));
+    for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
+      const VolumeMesh& mesh = column.at(layer, [&](Index k) { return stack(ring[k]); });
+      for (std::size_t i = 0; i < mesh.cell_count(); ++i) set(layer, first + i, cell_quality(mesh, i));
+    }
+    std::vector<Index> face;
+    double six_volumes = six_volumes_at_sides(c);
+    const auto add = [&](std::span<const Index> corners, Index) { six_volumes += six_volumes_under(corners); };
+    ColumnCells(cells_.points, ring, 0).visit_below(face, add);
+    ColumnCells(cells_.points, ring, cells_.layers - 1).visit_above(face, add);
+    return six_volumes;
+  }
+
+  float angle_at_wall(std::span<const Index> ring) const {
+    std::vector<Vec3d> wall, first;
+    for (const Index p : ring) wall.push_back(stack(p)[0]), first.push_back(stack(p)[1]);
+    return static_cast<float>(wall_angle(wall, first));
+  }
+
+  double six_volumes_at_sides(std::size_t c) const {
+    const auto ring = cells_.columns.ring(c);
+    double sum = 0;
+    for (Index k = 0; k < ring.size(); ++k) {
+      if (cells_.columns.open[cells_.columns.begin[c] + k] == 0) continue;
+      for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
+        std::array<Index, 4> face;
+        const Index size = ColumnCells(cells_.points, ring, layer).side(k, face);
+        if (size > 0) sum += six_volumes_under(std::span(face).first(size));
+      }
+    }
+    return sum;
+  }
+  double six_volumes_under(std::span<const Index> face) const {
+    return six_volumes_below(face, origin_, [&](Index p) -> const Vec3d& { return position(p); });
+  }
+  const Vec3d& position(Index point) const {
+    const LayerPoints& points = cells_.points;
+    if (point < points.wall()) return stack(point)[0];
+    const Index above = point - points.wall();
+    return stack(points.rising[above % points.risen()])[above / points.risen() + 1];
+  }
+
+  const LayersResult& layers_;
+  const LayerCells& cells_;
+  Vec3d origin_{0.0};  // volumes are summed up between here and the faces of the boundary
+  LayerQuality result_;
+};
+
+}  // namespace
+
+LayerQuality measure_cells(const LayersResult& layers, const LayerCells& cells) {
+  VDB_OFFSET_ASSERT(cells.layers == layers.count());
+  return CellMeasurer(layers, cells).measure();
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "products/cells/number_cells.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "ground/mesh/edge_sides.h"
+#include "ground/mesh/repeated_faces.h"
+#include "ground/numbers/disjoint_sets.h"
+#include "ground/system/assert.h"
+#include "ground/system/parallel.h"
+#include "products/layers/column_cells.h"
+#include "space/surface/weld.h"
+#include "vdb_offset/error.h"
+
+namespace vdb_offset {
+namespace {
+
+using Index = std::uint32_t;
+
+/// The positions of a face's corners without those that repeat the one before. Returns false if they are no polygon.
+bool clean_ring(std::span<const Index> face, std::span<const Index> welded_to, std::vector<Index>& ring,
+                std::vector<Index>& sorted) {
+  ring.clear();
+  for (const Index v : face)
+    if (ring.empty() || ring.back() != welded_to[v]) ring.push_back(welded_to[v]);
+  while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
+  if (ring.size() <= 3) return ring.size() == 3;  // neighbours differ, and all three are neighbours
+  sorted.assign(ring.begin(), ring.end());
+  std::sort(sorted.begin(), sorted.end());
+  return ring.size() > 2 && std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+}
+
+/// The side of a face that its first layer lies on: above 0 if its normal points there. Farther layers may have turned
+/// their backs to the wall.
+double rises(const LayersResult& layers, std::span<const Index> ring) {
+  const auto at = [&](Index v, std::size_t layer) -> const Vec3d& { return layers.stacks.of(v)[layer]; };
+  Vec3d normal(0.0), rise(0.0);
+  for (std::size_t k = 2; k < ring.size(); ++k)
+    normal += (at(ring[k - 1], 0) - at(ring[0], 0)).cross(at(ring[k], 0) - at(ring[0], 0));
+  for (const Index v : ring) rise += at(v, 1) - at(v, 0);
+  return normal.dot(rise);
+}
+
+/// The corner at which the diagonal of a quad with two columns starts; kNone for other faces.
+Index split_from(const LayersResult& layers, std::size_t f, std::size_t corners) {
+  return !layers.carries.empty() && layers.carries[f] > 1 && corners == 4 ? layers.carries[f] - 2u : kNone;
+}
+
+/// Makes columns on the faces that are polygons, and notes down the roles of faces.
+NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCellFacts& facts) {
+  // Of each face the numbers of its columns and corners, then the sums of those before it.
+  std::vector<Index> columns_before(mesh.face_count() + 1, 0), corners_before(mesh.face_count() + 1, 0);
+  const auto visit_rings = [&](auto&& visit) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.face_count(), 1024), [&](const auto& range) {
+      std::vector<Index> ring, sorted;
+      for (std::size_t f = range.begin(); f != range.end(); ++f)
+        if (layers.carries.empty() || layers.carries[f] != 0)
+          visit(f, ring, clean_ring(mesh.face(f), layers.welded_to, ring, sorted));
+    });
+  };
+  visit_rings([&](std::size_t f, const std::vector<Index>& ring, bool is_polygon) {
+    facts.role[f] = is_polygon ? FaceRole::Full : FaceRole::Degenerate;
+    if (!is_polygon) return;
+    const bool split = split_from(layers, f, ring.size()) != kNone;
+    columns_before[f + 1] = split ? 2 : 1;
+    corners_before[f + 1] = split ? 6 : static_cast<Index>(ring.size());
+  });
+  std::partial_sum(columns_before.begin(), columns_before.end(), columns_before.begin());
+  std::partial_sum(corners_before.begin(), corners_before.end(), corners_before.begin());
+  NumberedColumns columns;
+  columns.corners.resize(corners_before.back());
+  columns.begin.assign(columns_before.back() + std::size_t{1}, 0);
+  columns.face.resize(columns_before.back());
+  visit_rings([&](std::size_t f, const std::vector<Index>& ring, bool is_polygon) {
+    if (!is_polygon) return;
+    const auto to = columns.corners.begin() + corners_before[f];
+    const Index from = split_from(layers, f, ring.size()), first = columns_before[f];
+    columns.face[first] = static_cast<Index>(f);
+    columns.begin[columns_before[f + 1]] = corners_before[f + 1];
+    if (from == kNone) {
+      std::copy(ring.begin(), ring.end(), to);
+      return;
+    }
+    for (Index i = 0; i < 6; ++i) to[i] = ring[(from + (i < 3 ? i : i - 1)) % 4];
+    columns.face[first + 1] = static_cast<Index>(f);
+    columns.begin[first + 1] = corners_before[f] + 3;
+  });
+  return columns;
+}
+
+/// What becomes of a column.
+struct ColumnRole {
+  FaceRole role;
+  bool turned;  // it lies on the side opposite to the sign of the heights
+};
+std::vector<ColumnRole> find_roles(const LayersResult& layers, std::span<const std::uint8_t> flat, bool inward,
+                                   const NumberedColumns& columns) {
+  // Columns ahead whose stacks, which are far apart in memory, are prefetched. For speed alone; not measured.
+  constexpr std::size_t kAhead = 8;
+  std::vector<std::uint8_t> repeated(columns.count(), 0);
+  if (!layers.known.paired)
+    for (const RepeatedFace& each : find_repeated_faces(columns.corners, columns.begin)) repeated[each.face] = 1;
+  const bool none_turned = layers.known.none_turned;
+  std::vector<ColumnRole> roles(columns.count());
+  for_each_index(columns.count(), [&](std::size_t c) {
+    const auto ring = columns.ring(c);
+    for (const Index v : columns.ring(std::min(c + kAhead, columns.count() - 1))) {
+      if (none_turned) break;
+      const Vec3d* const stack = layers.stacks.of(v).data();
+      __builtin_prefetch(stack), __builtin_prefetch(stack + 1);
+    }
+    const auto flats =
+        static_cast<std::size_t>(std::count_if(ring.begin(), ring.end(), [&](Index v) { return flat[v] != 0; }));
+    const FaceRole role = repeated[c] != 0       ? FaceRole::Repeated
+                          : flats == ring.size() ? FaceRole::Flat
+                          : flats > 0            ? FaceRole::Transition
+                                                 : FaceRole::Full;
+    const bool unknown = !none_turned && role != FaceRole::Repeated && role != FaceRole::Flat;
+    const double side = unknown ? rises(layers, ring) : 0;
+    roles[c] = {role, side != 0 && (side < 0) != inward};
+  });
+  return roles;
+}
+
+/// Removes columns without cells, and turns those on the other side round. Returns false if any was turned.
+bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat, NumberedColumns& columns,
+                  LayerCellFacts& facts) {
+  const bool inward = layers.count() > 0 && layers.heights.back().farthest() < 0;
+  const std::vector<ColumnRole> roles = find_roles(layers, flat, inward, columns);
+  std::size_t kept = 0;
+  bool none_turned = true;
+  Index end = 0, last_face = kNone;
+  for (std::size_t c = 0, begin = 0; c < roles.size(); ++c) {
+    const auto ring = std::span(columns.corners).subspan(begin, columns.begin[c + 1] - begin);
+    begin = columns.begin[c + 1];
+    const Index face = columns.face[c];
+    const auto [role, turned] = roles[c];
+    // If the roles of a split quad's two columns differ, layers end in the quad.
+    const bool second = face == last_face;
+    last_face = face;
+    FaceRole& of_face = facts.role[face];
+    of_face = second && of_face != role ? FaceRole::Transition : role;
+    if (role == FaceRole::Repeated || role == FaceRole::Flat) continue;
+    none_turned = none_turned && !turned;
+    facts.turned_faces += turned && !second;
+    if (turned != inward) std::reverse(ring.begin() + 1, ring.end());
+    std::copy(ring.begin(), ring.end(), columns.corners.begin() + end);
+    end += static_cast<Index>(ring.size());
+    columns.face[kept++] = face;
+    columns.begin[kept] = end;
+  }
+  columns.face.resize(kept);
+  columns.begin.resize(kept + 1);
+  columns.corners.resize(end);
+  return none_turned;
+}
+
+/// Two sides of an edge with opposite directions, by the corners at which they start.
+struct SidePair {
+  Index forwards, backwards;
+};
+
+/// Calls pair(SidePair) for the sides of an edge, the first forwards with the first backwards and so on, and
+/// left(corner) for the sides that are left. `sides` are sorted by corner.
+template <class Pair, class Left>
+void pair_sides(std::span<const EdgeSide> sides, std::span<const Index> corners, Index smaller, Pair&& pair,
+                Left&& left) {
+  const auto seek = [&](std::size_t from, bool forwards) {
+    while (from < sides.size() && (corners[sides[from].corner] == smaller) != forwards) ++from;
+    return from;
+  };
+  std::size_t f = seek(0, true), b = seek(0, false);
+  for (; f < sides.size() && b < sides.size(); f = seek(f + 1, true), b = seek(b + 1, false))
+    pair(SidePair{sides[f].corner, sides[b].corner});
+  for (; f < sides.size(); f = seek(f + 1, true)) left(sides[f].corner);
+  for (; b < sides.size(); b = seek(b + 1, false)) left(sides[b].corner);
+}
+
+/// Finds the sides on the boundary, and the positions at which a side is left without a partner.
+class SideMatch {
+ public:
+  SideMatch(std::size_t vertices, std::span<const std::uint8_t> flat, NumberedColumns& columns, LayerCellFacts& facts)
+      : columns_(columns),
+        flat_(flat),
+        edges_({{}, columns.corners, columns.begin}, numbers_below(vertices)),
+        crowded_(vertices, 0) {
+    std::atomic<std::size_t> border_sides = 0, unpaired_sides = 0;
+    for_each_index(edges_.positions(), [&](std::size_t v) {
+      visit_risen_from(v, [&](Index a, Index b, std::span<const EdgeSide> sides) {
+        pair_sides(
+            sides, columns_.corners, a, [](SidePair) {},
+            [&](Index corner) {
+              columns_.open[corner] = 1;
+              ++(sides.size() == 1 ? border_sides : unpaired_sides);
+              if (sides.size() == 1) return;
+              for (const Index end : {a, b}) std::atomic_ref(crowded_[end]).store(1, std::memory_order_relaxed);
+            });
+      });
+    });
+    facts.border_sides = border_sides;
+    facts.unpaired_sides = unpaired_sides;
+    has_unpaired_ = unpaired_sides > 0;
+  }
+  /// Whether any side that is no border is left without a partner.
+  bool has_unpaired() const { return has_unpaired_; }
+  bool crowded(Index vertex) const { return crowded_[vertex] != 0; }
+
+  /// Joins corners that share a point of the wall, where a position has several points: over paired sides.
+  DisjointSets join_fans() const {
+    DisjointSets sets(columns_.corners.size());
+    for_edges([&](Index a, Index b, std::span<const EdgeSide> sides) {
+      if (!crowded(a) && !crowded(b)) return;
+      pair_sides(
+          sides, columns_.corners, a,
+          [&](SidePair pair) {
+            sets.join(pair.forwards, next(pair.backwards));
+            sets.join(next(pair.forwards), pair.backwards);
+          },
+          [](Index) {});
+    });
+    return sets;
+  }
+
+  /// Counts the unpaired sides that have the points of other sides. \pre no unpaired side is a border
+  std::size_t count_coincident(DisjointSets& sets) const {
+    std::size_t count = 0;
+    for_edges([&](Index a, Index, std::span<const EdgeSide> sides) {
+      const auto ends = [&](Index corner) {
+        std::pair at(sets.first(corner), sets.first(next(corner)));
+        return columns_.corners[corner] == a ? at : std::pair(at.second, at.first);
+      };
+      for (const EdgeSide& side : sides)
+        if (columns_.open[side.corner] != 0 && sides.size() > 1)
+          count += std::count_if(sides.begin(), sides.end(),
+                                 [&](const EdgeSide& other) { return ends(other.corner) == ends(side.corner); }) > 1;
+    });
+    return count;
+  }
+
+ private:
+  static std::vector<Index> numbers_below(std::size_t count) {
+    std::vector<Index> numbers(count);
+    for_each_index(count, [&](std::size_t i) { numbers[i] = static_cast<Index>(i); });
+    return numbers;
+  }
+  template <class Visit>
+  void visit_risen_from(std::size_t vertex, Visit&& visit) const {
+    edges_.visit_from(vertex, [&](Index smaller, std::span<const EdgeSide> sides) {
+      const Index larger = sides[0].larger_end;
+      if (flat_[smaller] == 0 || flat_[larger] == 0) visit(smaller, larger, sides);
+    });
+  }
+  template <class Visit>
+  void for_edges(Visit&& visit) const {
+    for (std::size_t v = 0; v < edges_.positions(); ++v) visit_risen_from(v, visit);
+  }
+  Index next(Index corner) const {
+    const auto column = std::upper_bound(columns_.begin.begin(), columns_.begin.end(), corner) - 1;
+    return columns_.next(static_cast<std::size_t>(column - columns_.begin.begin()), corner);
+  }
+
+  NumberedColumns& columns_;
+  std::span<const std::uint8_t> flat_;
+  EdgeSides edges_;
+  std::vector<std::uint8_t> crowded_;  // of each vertex: 1 if a side there is left without a partner
+  bool has_unpaired_ = false;
+};
+
+/// Makes the columns of faces over which layers rise, on the side where they do, with the first vertex at each corner's
+/// position, and notes down the roles of all faces.
+/// \param flat of each vertex: 1 if it rises in no layer
+/// \param all_paired becomes true if each side that rises is known to have one partner; sides of flat faces do not rise
+NumberedColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
+                             LayerCellFacts& facts, bool& all_paired) {
+  NumberedColumns columns = find_polygons(mesh, layers, facts);
+  const bool none_turned = keep_columns(layers, flat, columns, facts);
+  all_paired = none_turned && layers.known.paired &&
+               std::none_of(facts.role.begin(), facts.role.end(),
+                            [](FaceRole role) { return role == FaceRole::Bare || role == FaceRole::Degenerate; });
+  return columns;
+}
+
+/// Numbers the points, of which sides without a partner get some of their own, makes the corners of columns points of
+/// the wall instead of vertices, and marks the open sides of columns.
+LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, NumberedColumns& columns,
+                          LayerCellFacts& facts) {
+  columns.open.assign(columns.corners.size(), 0);
+  std::optional<SideMatch> sides;
+  if (!all_paired) sides.emplace(flat.size(), flat, columns, facts);
+  LayerPoints points;
+  std::vector<Index> of_vertex(flat.size(), kNone);
+  for_each_index(columns.corners.size(), [&](std::size_t c) {
+    std::atomic_ref(of_vertex[columns.corners[c]]).store(0, std::memory_order_relaxed);
+  });
+  for (std::size_t v = 0; v < flat.size(); ++v)
+    if (of_vertex[v] != kNone) {
+      of_vertex[v] = points.wall();
+      points.vertex.push_back(static_cast<Index>(v));
+    }
+  std::vector<Index> point(columns.corners.size());
+  for_each_index(point.size(), [&](std::size_t c) { point[c] = of_vertex[columns.corners[c]]; });
+  if (sides && sides->has_unpaired()) {
+    DisjointSets fans = sides->join_fans();
+    facts.coincident_sides = sides->count_coincident(fans);
+    std::vector<std::uint8_t> taken(flat.size(), 0);
+    for (Index c = 0; c < point.size(); ++c) {
+      const Index vertex = columns.corners[c], first = fans.first(c);
+      if (!sides->crowded(vertex)) continue;
+      if (first != c) {
+        point[c] = point[first];
+      } else if (taken[vertex] != 0) {
+        point[c] = points.wall();
+        points.vertex.push_back(vertex);
+        ++facts.split_points;
+      }
+      taken[vertex] = 1;
+    }
+  }
+  columns.corners = std::move(point);
+  points.in_layer.assign(points.wall(), kNone);
+  for (Index p = 0; p < points.wall(); ++p)
+    if (flat[points.vertex[p]] == 0) {
+      points.in_layer[p] = points.risen();
+      points.rising.push_back(p);
+    }
+  return points;
+}
+
+std::vector<std::uint8_t> find_flat(const SharedStacks& stacks) {
+  std::vector<std::uint8_t> flat(stacks.vertices());
+  for_each_index(flat.size(), [&](std::size_t v) {
+    const auto stack = stacks.of(v);
+    flat[v] = std::all_of(stack.begin(), stack.end(), [&](const Vec3d& x) { return x == stack[0]; });
+  });
+  return flat;
+}
+
+/// Counts the cells of each column, and their corners, and so numbers them.
+void count_cells(const LayerPoints& points, NumberedColumns& columns, LayerCellFacts& facts) {
+  columns.cells.assign(columns.count() + 1, 0);
+  columns.size.assign(columns.count() + 1, 0);
+  for_each_index(columns.count(), [&](std::size_t c) {
+    ColumnCells(points, columns.ring(c), 0)
+        .visit_cells([&](CellType) { ++columns.cells[c + 1]; }, [&](Index) { ++columns.size[c + 1]; });
+  });
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    facts.cells[columns.face[c]] = static_cast<std::uint8_t>(facts.cells[columns.face[c]] + columns.cells[c + 1]);
+  std::partial_sum(columns.cells.begin(), columns.cells.end(), columns.cells.begin());
+  std::partial_sum(columns.size.begin(), columns.size.end(), columns.size.begin());
+}
+
+void require_countable(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers) {
+  const std::uint64_t all_points = points.wall() + std::uint64_t{points.risen()} * layers;
+  const std::uint64_t all_cells = std::uint64_t{columns.cells.back()} * layers;
+  if (all_points >= kNone || all_cells >= kNone)
+    throw InvalidInput("layer_cells: expected fewer than 2^32 points and cells, got " + std::to_string(all_points) +
+                       " and " + std::to_string(all_cells) + " (ask for fewer layers)");
+}
+
+}  // namespace
+
+void require_layers_of(PolygonView mesh, const LayersResult& layers) {
+  const auto require = [](const char* what, std::size_t expected, std::size_t got) {
+    if (got != expected)
+      throw InvalidInput("layers: expected " + std::to_string(expected) + " " + what + ", got " + std::to_string(got));
+  };
+  require("layers in a stack", layers.count(), layers.stacks.layers());
+  require("stacks", mesh.positions.size(), layers.stacks.vertices());
+  require("welded vertices", mesh.positions.size(), layers.welded_to.size());
+  require("shares", mesh.positions.size(), layers.share.size());
+  require("states", mesh.positions.size(), layers.states.size());
+  require("distances achieved", mesh.positions.size(), layers.achieved.size());
+  require("distances of the first layer", mesh.positions.size(), layers.first_achieved.size());
+  for (const Distances& heights : layers.heights)
+    if (!heights.uniform()) require("heights", mesh.positions.size(), heights.count());
+  if (!layers.carries.empty()) require("marks of faces", mesh.face_count(), layers.carries.size());
+  require_usable(mesh, 1);
+  const auto is_welded = [&](Index v) {
+    return v < layers.welded_to.size() && layers.welded_to[v] < layers.welded_to.size();
+  };
+  const auto all = [](std::size_t count, auto&& holds) {
+    std::atomic<bool> found = true;
+    for_each_index(count, [&](std::size_t i) {
+      if (!holds(i)) found.store(false, std::memory_order_relaxed);
+    });
+    return found.load();
+  };
+  // Checking vertices is faster, as they are in order; only vertices of faces need a position.
+  if (!all(layers.welded_to.size(), [&](std::size_t v) { return is_welded(static_cast<Index>(v)); }) &&
+      !all(mesh.corners.size(), [&](std::size_t c) { return is_welded(mesh.corners[c]); }))
+    throw InvalidInput("layers: expected layers of this mesh, got some that lack welded vertices of its corners");
+}
+
+const char* name(FaceRole role) {
+  constexpr const char* kNames[kFaceRoleCount] = {"bare", "full", "transition", "flat", "degenerate", "repeated"};
+  return kNames[static_cast<std::size_t>(role)];
+}
+
+bool LayerCells::is_of_prisms(std::size_t column) const {
+  // A triangle's cells have six corners in all only if none of its corners is flat.
+  return columns.ring(column).size() == 3 && columns.size[column + 1] - columns.size[column] == 6;
+}
+
+LayerCells number_cells(PolygonView mesh, const LayersResult& layers) {
+  require_layers_of(mesh, layers);
+  LayerCells cells;
+  cells.layers = layers.count();
+  cells.facts.role.assign(mesh.face_count(), FaceRole::Bare);
+  cells.facts.cells.assign(mesh.face_count(), 0);
+  const std::vector<std::uint8_t> flat = find_flat(layers.stacks);
+  bool all_paired = false;
+  cells.columns = find_columns(mesh, layers, flat, cells.facts, all_paired);
+  cells.points = number_points(flat, all_paired, cells.columns, cells.facts);
+  VDB_OFFSET_ASSERT(std::is_sorted(cells.columns.begin.begin(), cells.columns.begin.end()));
+  VDB_OFFSET_ASSERT(std::all_of(cells.columns.corners.begin(), cells.columns.corners.end(),
+                                [&](Index p) { return p < cells.points.wall(); }));
+  count_cells(cells.points, cells.columns, cells.facts);
+  require_countable(cells.points, cells.columns, layers.count());
+  return cells;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "products/offset/faulty_miters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "ground/numbers/hash_mix.h"
+
+namespace vdb_offset {
+namespace {
+
+// Of the mitred corners of a fault those with the least area around them go back, and those with no more than so many
+// times that: a narrow slot then costs its own miters, and not those at the far corners of the plate around it. Not
+// measured.
+constexpr double kAlike = 4;
+// Miters that have been taken back are tried again in so many rounds, one in kTriedEvery of them at a time, each twice:
+// of those that got into each other's way some have room. Not measured.
+constexpr std::uint64_t kTrials = 6, kTriedEvery = 3;
+// If so few are left then, each is tried by itself. For speed; not measured.
+constexpr std::size_t kMostSingly = 100;
+
+// How far around a fault, along edges and in distances, round corners have no miters. See docs/dev/tuning.md.
+constexpr double kAround = 2;
+
+/// Takes back what is faulty of miters, and tries again what may have been taken back for others.
+class MiterJudge {
+ public:
+  MiterJudge(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched)
+      : faults_(faults), surface_(surface), mitred_(marched.mitred), paths_(marched.paths) {
+    for (const Miter& miter : marched.miters)
+      if (miter.gives_way) giving_way_.push_back(miter.vertex);
+  }
+
+  /// Takes all miters back within a length, along edges, of faults that do not come of miters. They are not tried
+  /// again.
+  void give_up_around_faults(double length) {
+    const Indices faulty = faults_.faulty_vertices();
+    if (faulty.empty()) return;
+    given_up_ = vertices_within(length, faulty);
+    faults_.move_to_ends(paths_, mitred_.take_back(given_up_, paths_));
+    take_faulty_back();
+  }
+
+  void take_faulty_back() {
+    for (Indices back = faulty_miters(); !back.empty(); back = faulty_miters())
+      faults_.move_to_ends(paths_, mitred_.take_back(back, paths_));
+  }
+
+  /// Takes back those that give way, for others to have room first.
+  void set_aside() { faults_.move_to_ends(paths_, mitred_.take_back(giving_way_, paths_)); }
+
+  void try_those_set_aside() {
+    Indices some;
+    std::set_difference(giving_way_.begin(), giving_way_.end(), given_up_.begin(), given_up_.end(),
+                        std::back_inserter(some));
+    try_again(some);
+    mitred_.forget(giving_way_);  // those that have come back: they would take the room of others later
+  }
+
+  void try_all_again() {
+    const Indices taken_back = to_try_again();
+    for (std::uint64_t trial = 0; trial < kTrials && !taken_back.empty(); ++trial) {
+      Indices some = taken_back;
+      std::erase_if(some, [&](std::uint32_t v) {
+        const std::uint64_t turn = trial / kTriedEvery;
+        return (mix(turn << 32 | v) + trial) % kTriedEvery != 0;
+      });
+      try_again(some);
+    }
+    const Indices left = to_try_again();
+    if (left.size() <= kMostSingly)
+      for (const auto v : left) try_again({v});
+  }
+
+ private:
+  double area_around(std::uint32_t v) const {
+    double area = 0;
+    for (const auto t : surface_.triangles_around(v)) area += surface_.extent(t);
+    return area;
+  }
+
+  /// The vertices no farther than a length from some, along edges.
+  Indices vertices_within(double length, const Indices& from) const {
+    std::vector<double> left(surface_.vertices.size(), -1.0);  // of the length, at each vertex that has been reached
+    std::priority_queue<std::pair<double, std::uint32_t>> queue;
+    const auto reach = [&](std::uint32_t v, double rest) {
+      if (!(rest > left[v])) return;
+      left[v] = rest;
+      queue.emplace(rest, v);
+    };
+    for (const auto v : from) reach(v, length);
+    while (!queue.empty()) {
+      const auto [rest, v] = queue.top();
+      queue.pop();
+      if (rest < left[v]) continue;
+      for (const auto t : surface_.triangles_around(v))
+        for (const auto w : surface_.triangles[t])
+          reach(w, rest - (surface_.vertices[w] - surface_.vertices[v]).length());
+    }
+    Indices within;
+    for (std::uint32_t v = 0; v < left.size(); ++v)
+      if (left[v] >= 0) within.push_back(v);
+    return within;
+  }
+
+  bool gives_way(std::uint32_t v) const { return std::binary_search(giving_way_.begin(), giving_way_.end(), v); }
+
+  /// The mitred vertices that a fault comes of: misplaced ones, and of each other fault those with the least area.
+  Indices faulty_miters() const {
+    Indices vertices;
+    for (const auto v : faults_.misplaced())
+      if (mitred_.is_mitred(v)) vertices.push_back(v);
+    faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
+      std::vector<std::pair<double, std::uint32_t>> corners;
+      for (const auto triangle : {s, t})
+        for (const auto v : surface_.triangles[triangle])
+          if (mitred_.is_mitred(v)) corners.emplace_back(area_around(v), v);
+      if (corners.empty()) return;
+      const double least = std::min_element(corners.begin(), corners.end())->first;
+      for (const auto& [area, v] : corners)
+        if (area <= kAlike * least) vertices.push_back(v);
+    });
+    // What the rim of a shell meets is told by its corners alone.
+    faults_.for_each_faulty_corner(
+        [&](std::uint32_t v) {
+          if (mitred_.is_mitred(v)) vertices.push_back(v);
+        },
+        [](std::uint32_t) { return true; });
+    sort_unique(vertices);
+    return vertices;
+  }
+
+  Indices to_try_again() const {
+    const Indices taken_back = mitred_.taken_back();
+    Indices some;
+    std::set_difference(taken_back.begin(), taken_back.end(), given_up_.begin(), given_up_.end(),
+                        std::back_inserter(some));
+    std::erase_if(some, [&](std::uint32_t v) { return gives_way(v); });
+    return some;
+  }
+
+  /// Miters vertices again, and takes those back that come to be at faults.
+  void try_again(const Indices& vertices) {
+    const Indices tried = mitred_.miter_again(vertices, paths_);
+    if (tried.empty()) return;
+    FaultFinder::Trial trial = faults_.try_ends(paths_, tried);
+    for (Indices back = tried; !back.empty();) {
+      const Indices faulty = faults_.faulty_vertices();
+      back.clear();
+      std::set_intersection(tried.begin(), tried.end(), faulty.begin(), faulty.end(), std::back_inserter(back));
+      back = mitred_.take_back(back, paths_);
+      trial.take_back(back);
+    }
+  }
+
+  FaultFinder& faults_;
+  const Surface& surface_;
+  MitredPaths& mitred_;
+  Paths& paths_;
+  Indices given_up_;    // vertices that are not to be mitred again; sorted
+  Indices giving_way_;  // mitred vertices that do; sorted
+};
+
+}  // namespace
+
+void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, Corners corners, double distance,
+                             PreparedMesh::Marched& marched) {
+  if (marched.mitred.empty()) return;
+  MiterJudge judge(faults, surface, marched);
+  judge.set_aside();
+  judge.take_faulty_back();
+  if (corners == Corners::Round) judge.give_up_around_faults(kAround * distance);
+  judge.try_all_again();
+  judge.try_those_set_aside();
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "space/curve/curve_line.h"
+
+#include <algorithm>
+
+#include "ground/numbers/median.h"
+#include "vdb_offset/error.h"
+
+namespace vdb_offset {
+namespace {
+
+double median_length(const PlaneChains& plane) {
+  std::vector<double> lengths;
+  for (const auto& [a, b] : plane.chains.segments) lengths.push_back((plane.points[b] - plane.points[a]).length());
+  return median(lengths);
+}
+
+/// Closes a curve. If one curve of the input runs between the two ends, its first point is appended to it; otherwise a
+/// curve of one segment is added.
+void close(Curves& curves, const OpenCurve& open) {
+  const CurvesView view = curves.view();
+  for (std::size_t c = 0; c < view.face_count(); ++c) {
+    const auto curve = view.face(c);
+    const bool runs = curve.front() == open.first && curve.back() == open.last,
+               runs_back = curve.front() == open.last && curve.back() == open.first;
+    if (!runs && !runs_back) continue;
+    const auto first = curve.front();
+    curves.corners.insert(curves.corners.begin() + curves.face_begin[c + 1], first);
+    for (std::size_t later = c + 1; later < curves.face_begin.size(); ++later) ++curves.face_begin[later];
+    return;
+  }
+  curves.add_face({open.last, open.first});
+}
+
+}  // namespace
+
+PlaneChains chains_in_plane(CurvesView curves) {
+  PlaneChains plane{plane_of(curves), {}, {}};
+  plane.points.reserve(curves.positions.size());
+  for (const Vec3d& p : curves.positions) plane.points.push_back(plane.frame.to_plane(p));
+  plane.chains = join_curves(curves, plane.points);
+  if (plane.chains.segments.empty()) throw InvalidInput("curves: expected a segment, got single points alone");
+  return plane;
+}
+
+MeshFacts facts_of(CurvesView curves, const PlaneChains& plane) {
+  const CurveChains& chains = plane.chains;
+  MeshFacts facts;
+  facts.vertices = plane.points.size();
+  facts.unused_vertices = static_cast<std::size_t>(std::count(chains.welded_to.begin(), chains.welded_to.end(), kNone));
+  for (std::uint32_t p = 0; p < plane.points.size(); ++p) facts.welded_vertices += chains.welded_to[p] == p;
+  facts.faces_by_corners[2] = chains.segments.size();
+  facts.components = chains.chains;
+  facts.closed_components = chains.closed;
+  facts.boundary_edges = facts.boundary_left = chains.ends;
+  facts.non_manifold_edges = facts.non_manifold_left = chains.branchings;
+  facts.median_edge = median_length(plane);
+  facts.lower = facts.upper = curves.positions[curves.corners.front()];
+  for (const auto p : curves.corners) {
+    facts.lower = openvdb::math::minComponent(facts.lower, curves.positions[p]);
+    facts.upper = openvdb::math::maxComponent(facts.upper, curves.positions[p]);
+  }
+  facts.diagonal = (facts.upper - facts.lower).length();
+  return facts;
+}
+
+DrawnLine draw_line(const PlaneChains& plane, const Vec3d& origin, double z) {
+  DrawnLine drawn;
+  drawn.vertex.assign(plane.points.size(), kNone);
+  std::vector<Vec3d> vertices;
+  std::vector<Segment> segments = plane.chains.segments;
+  for (Segment& segment : segments)
+    for (auto& p : segment) {
+      if (drawn.vertex[p] == kNone) {
+        drawn.vertex[p] = static_cast<std::uint32_t>(drawn.source.size());
+        drawn.source.push_back(plane.points[p]);
+        vertices.emplace_back(plane.points[p][0] - origin[0], plane.points[p][1] - origin[1], z);
+      }
+      p = drawn.vertex[p];
+    }
+  for (std::uint32_t p = 0; p < plane.points.size(); ++p)
+    if (plane.chains.welded_to[p] != kNone) drawn.vertex[p] = drawn.vertex[plane.chains.welded_to[p]];
+  drawn.line = make_polyline(std::move(vertices), std::move(segments), plane.chains);
+  drawn.line.origin = origin;
+  return drawn;
+}
+
+std::vector<OpenCurve> open_curves(CurvesView curves) {
+  const PlaneChains plane = chains_in_plane(curves);
+  const auto& segments = plane.chains.segments;
+  std::vector<std::uint8_t> degree(plane.points.size(), 0);
+  for (const Segment& segment : segments)
+    for (const auto p : segment) degree[p] = static_cast<std::uint8_t>(std::min(degree[p] + 1, 3));
+  std::vector<OpenCurve> open;
+  for (std::size_t first = 0, last = 0; first < segments.size(); first = last) {
+    double length = 0;
+    do {
+      length += (plane.points[segments[last][1]] - plane.points[segments[last][0]]).length();
+      ++last;
+    } while (last < segments.size() && segments[last][0] == segments[last - 1][1] && degree[segments[last][0]] == 2);
+    const std::uint32_t from = segments[first][0], to = segments[last - 1][1];
+    if (degree[from] == 1 && degree[to] == 1)
+      open.push_back({from, to, length, (plane.points[to] - plane.points[from]).length()});
+  }
+  return open;
+}
+
+std::vector<OpenCurve> close_curves(Curves& curves) {
+  std::vector<OpenCurve> closed = open_curves(curves.view());
+  std::erase_if(closed, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
+  for (const OpenCurve& each : closed) close(curves, each);
+  return closed;
+}
+
+bool OpenCurve::is_nearly_closed() const { return gap < kNearlyClosed * length; }
+
+}  // namespace vdb_offset

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bytes/chunked_output.h"
+#include "document/new_normals.h"
+#include "ground/numbers/rounding.h"
+#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
+
+namespace vdb_offset::io {
+
+/// What a file calls its faces: indices of names for each face; an empty name is none.
+struct FaceNames {
+  std::vector<std::string> groups, materials;
+  std::vector<std::uint32_t> group_of, material_of;  ///< Of all faces, or empty.
+  std::vector<std::string> layers = {};              ///< Of each group a second name, that of its layer; or empty.
+  /// Of each material its colour: red, green and blue, 0 .. 1, sRGB. Empty: none is known.
+  std::vector<std::optional<std::array<double, 3>>> colours = {};
+};
+
+/// The moved mesh that a document is to be written with.
+struct MovedMesh {
+  const MeshFile& source;  ///< Outlives the pieces that are made of it, as the positions do.
+  std::span<const Vec3d> positions;
+  Rounding precision;
+  NewNormals normals;  ///< One for each of source.vertex_normals; or none.
+  std::string path;    ///< Where it will be written.
+
+  bool has_moved(std::size_t v) const { return io::has_moved(source.polygons.positions[v], positions[v], precision); }
+  bool any_has_moved() const;
+};
+
+/// A file, and those that lie beside it, by their paths.
+struct WrittenDocument {
+  Pieces file;
+  struct Beside {
+    std::string path, bytes;
+  };
+  std::vector<Beside> beside;
+  std::vector<std::string> lost;  ///< What of the source it does not hold, in words.
+};
+
+/// What the reader of a format keeps of a file whose meshes are one part among others.
+class Document {
+ public:
+  Document() = default;
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+  virtual ~Document() = default;
+
+  /// The file in its own format, with all that it holds, over other positions.
+  virtual WrittenDocument rewrite(const MovedMesh& moved) const = 0;
+
+  /// Adds what other formats have a place for, too. `attributes.lost` comes with the source's extras; what is added is
+  /// taken out of it.
+  virtual void read_attributes(const MeshFile& source, Attributes& attributes) const;
+
+  virtual FaceNames face_names() const;
+
+  /// One number a face: 1 if the selector names it, which is not by a group, a material or a file.
+  /// \throw InvalidOption if there is no such face, or the format has no such names
+  virtual std::vector<std::uint8_t> select(const MeshFile& source, const Selector& selector) const;
+
+  /// The numbers that it holds for its vertices under a name.
+  /// \throw InvalidInput if it has none of that name, or not one finite number for each
+  virtual std::vector<double> vertex_numbers(const MeshFile& source, const std::string& name) const;
+};
+
+}  // namespace vdb_offset::io
