@@ -317,14 +317,14 @@ CurveFile parse_curves(const std::string& name, CurveFormat format, std::string 
 
 namespace {
 
-Rounding rounding_of(const WriteOptions& options) {
+Precision precision_of_new(const WriteOptions& options) {
   return options.digits > 0 ? Precision{Precision::Kind::Digits, options.digits} : Precision{};
 }
 
 }  // namespace
 
 Precision precision_of_curves(const std::string& path, const CurveFile& source, const WriteOptions& options) {
-  Precision precision = rounding_of(options);
+  Precision precision = precision_of_new(options);
   const bool is_in_place =
       curve_format_of(path) == source.format && source.format != CurveFormat::Svg && source.format != CurveFormat::Dxf;
   precision.rounds_all = !is_in_place;
@@ -333,14 +333,13 @@ Precision precision_of_curves(const std::string& path, const CurveFile& source, 
 
 void write_curves(const std::string& path, CurvesView curves, const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
-  const Rounding precision = rounding_of(options);
-  write_pieces(path, in_sections(as_file(format, curves, precision), {}));
+  write_pieces(path, in_sections(as_file(format, curves, precision_of_new(options)), {}));
 }
 
 void write_curves(const std::string& path, const CurveFile& source, std::span<const Vec3d> positions,
                   const WriteOptions& options) {
   const CurveFormat format = format_of_curves(path);
-  const Rounding precision = rounding_of(options);
+  const Rounding precision = precision_of_curves(path, source, options);
   const Curves& read = source.file.polygons;
   const CurvesView moved{positions, read.corners, read.face_begin};
   const Pieces pieces =

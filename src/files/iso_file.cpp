@@ -34,35 +34,26 @@ Transported read_transported(const MeshFile& source, const TransportRequest& req
   return transported;
 }
 
-Precision precision_of_iso(const std::string& path, const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  if (is_single(format)) return {Rounding::Kind::Single};
-  if (is_text(format) && options.digits > 0) return {Rounding::Kind::Digits, options.digits};
-  return {};
-}
-
-WriteResult write_iso_surface(const std::string& path, const MeshFile& source, const Transported& transported,
-                              const IsoResult& iso, const WriteOptions& options) {
+WriteResult write_iso_surface(const Target& target, const MeshFile& source, const Transported& transported,
+                              const IsoResult& iso) {
   WriteResult result;
-  const Pieces pieces = convert(source, require_written_format(path, options.format), iso, transported,
-                                precision_of_iso(path, options), result);
-  write_pieces_of(source.path, source.bytes, path, pieces);
+  const Pieces pieces = convert(source, target.format, iso, transported, target.precision, result);
+  write_pieces_of(source.path, source.bytes, target.path, pieces);
   return result;
 }
 
-void write_iso_surface(const std::string& path, const IsoResult& iso, const WriteOptions& options) {
-  write_pieces(path, convert(require_written_format(path, options.format), iso, precision_of_iso(path, options)));
+void write_iso_surface(const Target& target, const IsoResult& iso) {
+  write_pieces(target.path, convert(target.format, iso, target.precision));
 }
 
-WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow, const IsoResult& iso,
-                         const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
+WriteResult write_hollow(const Target& target, const MeshFile* source, const Hollow& hollow, const IsoResult& iso) {
   const bool is_skin = source != nullptr && hollow.source != Hollow::Source::Neither;
   WriteResult result;
-  const Pieces pieces = is_skin ? convert(*source, format, hollow, iso, result)
-                                : convert(format, hollow, source ? source->unit_micrometres : std::nullopt, result);
-  if (source) write_pieces_of(source->path, source->bytes, path, pieces);
-  else write_pieces(path, pieces);
+  const Pieces pieces = is_skin
+                            ? convert(*source, target.format, hollow, iso, result)
+                            : convert(target.format, hollow, source ? source->unit_micrometres : std::nullopt, result);
+  if (source) write_pieces_of(source->path, source->bytes, target.path, pieces);
+  else write_pieces(target.path, pieces);
   return result;
 }
 

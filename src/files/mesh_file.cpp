@@ -158,46 +158,41 @@ std::optional<double> unit_micrometres(const std::string& path, std::optional<Fo
 
 namespace {
 
-Precision precision_of_file(Format format, bool same, const MeshFile& source, const WriteOptions& options) {
-  const bool text = same ? source.encoding == Encoding::Ascii : is_text(format);
-  Precision precision = same ? source.precision : Precision{};
-  if (is_single(format) && !same) precision = {Rounding::Kind::Single};
+Target make_target(const std::string& path, const WriteOptions& options, const MeshFile* rows_of) {
+  const Format format = require_written_format(path, options.format);
+  const bool text = rows_of ? rows_of->encoding == Encoding::Ascii : is_text(format);
+  Precision precision = rows_of ? rows_of->precision : Precision{};
+  if (is_single(format) && !rows_of) precision = {Rounding::Kind::Single};
   else if (text && options.digits > 0) precision = {Rounding::Kind::Digits, options.digits};
-  precision.rounds_all = !same;
-  return precision;
+  precision.rounds_all = !rows_of;
+  return {path, format, options.normals, precision};
 }
 
 }  // namespace
 
-Precision precision_of(const std::string& path, const MeshFile& source, const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  return precision_of_file(format, format == source.format, source, options);
+Target target_of(const std::string& path, const MeshFile& source, const WriteOptions& options, Faces faces) {
+  // A document whose faces are others becomes a new file.
+  const bool has_rows =
+      require_written_format(path, options.format) == source.format && (faces == Faces::Same || !source.document);
+  return make_target(path, options, has_rows ? &source : nullptr);
 }
 
-Precision precision_of(const std::string& path, const WriteOptions& options) {
-  return precision_of_file(require_written_format(path, options.format), false, {}, options);
-}
+Target target_of(const std::string& path, const WriteOptions& options) { return make_target(path, options, nullptr); }
 
-Precision precision_of_new(const std::string& path, const MeshFile& source, const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  return precision_of_file(format, format == source.format && !source.document, source, options);
-}
-
-WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
-                       const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  const Rounding precision = precision_of(path, source, options);
+WriteResult write_mesh(const Target& target, const MeshFile& source, std::span<const Vec3d> positions) {
+  const auto& [path, format, how_normals, kept] = target;
+  const Rounding precision = kept;
   WriteResult result;
   WrittenDocument made;
   if (format == source.format) {
     NewNormals normals;
-    if (options.normals == Normals::Recompute) normals = new_normals(source, positions, precision);
+    if (how_normals == Normals::Recompute) normals = new_normals(source, positions, precision);
     result.disagreeing_normals = normals.disagreeing;
     if (source.document) made = rewritten(source, positions, precision, std::move(normals), path);
     else made.file = rewrite_in_place(source, positions, precision, std::move(normals));
     result.lost = first_names(made.lost);
   } else {
-    made.file = convert(source, format, positions, precision, options.normals, result);
+    made.file = convert(source, format, positions, precision, how_normals, result);
   }
   OutputFiles together;
   for (const WrittenDocument::Beside& beside : made.beside) {
@@ -216,16 +211,14 @@ std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positio
   return join(rewrite_in_place(source, positions, source.precision, std::move(normals)));
 }
 
-void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  const Rounding precision = options.digits > 0 ? Rounding{Rounding::Kind::Digits, options.digits} : Rounding{};
-  write_pieces(path, encode(format, std::make_shared<Content>(Content{polygons, precision, {}, {}, {}})));
+void write_mesh(const Target& target, PolygonView polygons) {
+  write_pieces(target.path,
+               encode(target.format, std::make_shared<Content>(Content{polygons, target.precision, {}, {}, {}})));
 }
 
-void write_mesh(const std::string& path, PolygonView source, std::span<const Vec3d> positions,
-                const WriteOptions& options) {
+void write_mesh(const Target& target, PolygonView source, std::span<const Vec3d> positions) {
   const auto triangles = split_polygons(source);
-  write_mesh(path, {positions, source.corners, source.face_begin, triangles}, options);
+  write_mesh(target, {positions, source.corners, source.face_begin, triangles});
 }
 
 }  // namespace vdb_offset::io

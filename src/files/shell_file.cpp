@@ -153,32 +153,27 @@ std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& prec
   return normals;
 }
 
-WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
-                        const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  const Rounding precision = precision_of_new(path, source, options);
+WriteResult write_shell(const Target& target, const MeshFile& source, const Shell& shell) {
   require_same_mesh(source, shell);
   WriteResult result;
   Pieces pieces;
   // The source's rows are kept unless they are strips, which cannot be reversed face by face.
-  if (format == source.format && !source.document && !has_strips(source)) {
-    const auto content = std::make_shared<ShellContent>(ShellContent{source, shell, precision, options.normals});
+  if (target.format == source.format && !source.document && !has_strips(source)) {
+    const auto content = std::make_shared<ShellContent>(ShellContent{source, shell, target.precision, target.normals});
     std::vector<std::string> lost;
     pieces = with_line_ends_of(source, in_own_format(content, lost));
     result.disagreeing_normals = content->outer.new_normals().disagreeing + content->inner.new_normals().disagreeing;
     result.lost = first_names(lost);
   } else {
-    pieces = convert(source, format, shell, precision, options.normals, result);
+    pieces = convert(source, target.format, shell, target.precision, target.normals, result);
   }
-  write_pieces_of(source.path, source.bytes, path, pieces);
+  write_pieces_of(source.path, source.bytes, target.path, pieces);
   return result;
 }
 
-WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options) {
-  const Format format = require_written_format(path, options.format);
-  const Rounding precision = options.digits > 0 ? Rounding{Rounding::Kind::Digits, options.digits} : Rounding{};
+WriteResult write_shell(const Target& target, const Shell& shell) {
   WriteResult result;
-  write_pieces(path, convert(format, shell, precision, result));
+  write_pieces(target.path, convert(target.format, shell, target.precision, result));
   return result;
 }
 

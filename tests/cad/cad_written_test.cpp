@@ -191,7 +191,7 @@ TEST_CASE("cad written: a groove that closes is gone from the floor that it shar
 }
 
 TEST_CASE("cad written: walls of a hollow block are good to the last, and not when they are gone", "[cad][long]") {
-  // Nearly all of each wall's sides lies over the mitres of the other side.
+  // Nearly all of each wall's sides lies over the miters of the other side.
   for (const double d : {-2.3, -2.4, -2.49}) {
     INFO(d);
     const Written written = write("hollow.step", d, "thin.step");

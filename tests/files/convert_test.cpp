@@ -285,7 +285,7 @@ TEST_CASE("convert: in every format, random offsets are to check what they were 
       OffsetOptions options;
       options.distance = scene.distance;
       options.weld = WeldOptions::automatic();
-      options.precision = io::precision_of(path, source);
+      options.precision = io::target_of(path, source).precision;
       const OffsetResult result = offset(source.polygons.view(), options);
       io::write_mesh(path, source, result.positions);
       const Polygons back = io::read_mesh(path).polygons;

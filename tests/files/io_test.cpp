@@ -380,8 +380,8 @@ TEST_CASE("io: digits, normals kept, and normals whose vertices disagree", "[io]
   CHECK(io::write_mesh(folder.file("c.obj"), file, bent).disagreeing_normals == 1);
   const std::vector<Vec3d> lifted = shifted(file.polygons.positions, {0, 0, 1});
   CHECK(io::write_mesh(folder.file("c.obj"), file, lifted).disagreeing_normals == 0);
-  CHECK(Rounding(io::precision_of("x.obj", file, {.digits = 3}))(1.0 / 3) == 0.333);
-  CHECK(Rounding(io::precision_of("x.stl", file))(1.0 / 3) == static_cast<double>(1.0f / 3));
+  CHECK(Rounding(io::target_of("x.obj", file, {.digits = 3}).precision)(1.0 / 3) == 0.333);
+  CHECK(Rounding(io::target_of("x.stl", file).precision)(1.0 / 3) == static_cast<double>(1.0f / 3));
 }
 
 TEST_CASE("io: a file that changes while it is in use is told", "[io]") {

@@ -68,7 +68,7 @@ TEST_CASE("iso: a hollow solid is the source and a cavity, or two clean skins", 
   const IsoResult inside = make_iso_surface(source.polygons.view(), options_of(-0.1, 0.05));
   const Hollow hollow = make_hollow(source.polygons.view(), inside.polygons.view(), Hollow::Source::Outer);
   for (const char* name : {"out.obj", "out.ply", "out.stl", "out.off"}) {
-    io::write_hollow(folder.file(name), &source, hollow, inside);
+    io::write_hollow(io::target_of(folder.file(name)), &source, hollow, inside);
     const io::MeshFile written = io::read_mesh(folder.file(name));
     CHECK(test::enclosed_volume(written.polygons) == Approx(1 - 0.512).epsilon(1e-6));
     if (std::string(name) == "out.obj") {

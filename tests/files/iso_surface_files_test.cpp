@@ -64,7 +64,7 @@ TEST_CASE("transport: texture, colours and materials are those of the closest po
   const io::MeshFile source = io::read_mesh(folder.write("sphere.obj", textured_sphere()));
   const IsoResult result = captured(source.polygons, 0.1, 0.1);
   const io::Transported transported = io::read_transported(source, {}, io::Format::Obj);
-  io::write_iso_surface(folder.file("out.obj"), source, transported, result);
+  io::write_iso_surface(io::target_of(folder.file("out.obj")), source, transported, result);
   const io::MeshFile written = io::read_mesh(folder.file("out.obj"));
   const Polygons& mesh = written.polygons;
   const io::Attributes with = io::read_attributes(written);

@@ -339,7 +339,7 @@ CheckResult measure_meshes(const CheckRequest& request) {
   options.exact = job.options.exact;
   options.weld = job.options.weld;
   options.orient = job.options.orient;
-  if (io::is_written(offset.format)) options.precision = io::precision_of(made.output, offset, made.write);
+  if (io::is_written(offset.format)) options.precision = io::target_of(made.output, offset, made.write).precision;
   options.precision.rounds_all = source.file->format != offset.format;
   options.threads = made.threads;
   if (made.tolerance) {

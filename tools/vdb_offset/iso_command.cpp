@@ -22,7 +22,8 @@ namespace {
 void require_valid(const IsoStatistics& found) {
   if (found.valid()) return;
   throw Error(fmt::format(
-      "iso-surface: expected a closed, manifold surface that does not cross itself, got {} border edges, {} non-manifold "
+      "iso-surface: expected a closed, manifold surface that does not cross itself, got {} border edges, {} "
+      "non-manifold "
       "edges, {} pinched vertices, {} crossings and {} triangles without area on each of {} lattices (try another "
       "--voxel-size, or more digits)",
       found.border_edges, found.non_manifold_edges, found.pinched_vertices, found.mending.left.crossings,
@@ -39,8 +40,7 @@ void require_even(const Job& job) {
     throw InvalidOption("--mode iso: expected the whole mesh and nothing else, got a part or obstacles");
 }
 
-IsoOptions options_of(const Job& job, const Distances& distance, const std::string& path,
-                      const io::Transported& transported = {}) {
+IsoOptions options_of(const Job& job, const Distances& distance, const io::Transported& transported = {}) {
   const OffsetOptions& given = job.options;
   const IsoRequest& asked = *job.request.iso;
   IsoOptions options;
@@ -54,8 +54,7 @@ IsoOptions options_of(const Job& job, const Distances& distance, const std::stri
   options.use_winding = asked.use_winding;
   options.off_source = job.shell;
   options.keep_specks = asked.keep_specks;
-  if (!is_level_set_output(path, job.request))
-    options.precision = io::precision_of_iso(path, write_options(job.request, path));
+  options.precision = job.options.precision;
   options.weld = given.weld;
   options.orient = given.orient;
   options.threads = given.threads;
@@ -96,21 +95,20 @@ LevelSetFacts write_level_set(const Job& job, const Destination& to, const IsoRe
 std::optional<LevelSetFacts> write_iso_surface(const Job& job, const io::Transported& transported,
                                                const Destination& to, IsoResult& result, Clock::time_point start) {
   const auto writing = Clock::now();
-  const io::WriteOptions options = write_options(job.request, to.mesh);
   const std::optional<io::MeshFile>& file = job.source.file;
   std::optional<LevelSetFacts> level_set;
-  if (is_level_set_output(to.mesh, job.request)) level_set = write_level_set(job, to, result);
-  else if (file) tell_losses(job.request, to.mesh, io::write_iso_surface(to.mesh, *file, transported, result, options));
-  else io::write_iso_surface(to.mesh, result, options);
+  if (!job.target) level_set = write_level_set(job, to, result);
+  else if (file)
+    tell_losses(job.request, to.mesh, io::write_iso_surface(job.target->at(to.mesh), *file, transported, result));
+  else io::write_iso_surface(job.target->at(to.mesh), result);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!to.report.empty()) write_iso_report(job, to, result, start, {.level_set = level_set});
   return level_set;
 }
 
-IsoResult make_valid(const Job& job, const Distances& distance, const std::string& path,
-                     const io::Transported& transported) {
+IsoResult make_valid(const Job& job, const Distances& distance, const io::Transported& transported) {
   IsoResult result =
-      make_iso_surface_in_metric(job.source.view(), options_of(job, distance, path, transported), job.options.metric);
+      make_iso_surface_in_metric(job.source.view(), options_of(job, distance, transported), job.options.metric);
   require_valid(result.statistics);
   return result;
 }
@@ -142,9 +140,8 @@ void require_apart(const Hollow& hollow, const IsoStatistics& found) {
 void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, IsoResult& iso, const IsoResult* inner,
                   Clock::time_point start) {
   const auto writing = Clock::now();
-  const io::WriteOptions options = write_options(job.request, to.mesh);
   const io::MeshFile* const file = job.source.file ? &*job.source.file : nullptr;
-  tell_losses(job.request, to.mesh, io::write_hollow(to.mesh, file, hollow, iso, options));
+  tell_losses(job.request, to.mesh, io::write_hollow(job.target->at(to.mesh), file, hollow, iso));
   iso.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!to.report.empty()) write_iso_report(job, to, iso, start, {.shell = &hollow.facts, .inner = inner});
 }
@@ -168,18 +165,16 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   const std::vector<Destination>& destinations = job.outputs;
   if (job.request.dry_run) {
     for (std::size_t i = 0; i < destinations.size(); ++i)
-      print_iso_dry_run(
-          job,
-          plan_iso_surface_in_metric(mesh, options_of(job, job.distances[i], destinations[i].mesh), job.options.metric),
-          job.distances[i][0]);
+      print_iso_dry_run(job, plan_iso_surface_in_metric(mesh, options_of(job, job.distances[i]), job.options.metric),
+                        job.distances[i][0]);
     return kDone;
   }
   const io::Transported transported = read_attributes_of(job);
   std::vector<IsoResult> results;
   for (std::size_t i = 0; i < destinations.size(); ++i)
-    results.push_back(make_valid(job, job.distances[i], destinations[i].mesh, transported));
+    results.push_back(make_valid(job, job.distances[i], transported));
   std::optional<IsoResult> inner;
-  if (job.request.inner) inner = make_valid(job, job.distances.back(), destinations.front().mesh, transported);
+  if (job.request.inner) inner = make_valid(job, job.distances.back(), transported);
   if (job.shell) require_inside(results.front());
   bar.show(Stage::Write, 0);
   const IsoResult* const inner_skin = inner ? &*inner : nullptr;

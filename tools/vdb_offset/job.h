@@ -8,6 +8,7 @@
 #include "request/request.h"
 #include "source.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/scene.h"
 
@@ -27,7 +28,9 @@ struct Destination {
 struct Job {
   const Request& request;
   const Source& source;
-  OffsetOptions options;               ///< All but the distance and the progress.
+  OffsetOptions options;  ///< All but the distance and the progress.
+  /// The meshes that are written, but for their names; none where OUTPUT is no mesh file.
+  std::optional<io::Target> target{};
   bool shell = false;                  ///< By the command line or a scene.
   std::vector<DistanceRequest> asked;  ///< The distances as given, one for each output; of layers: none.
   std::vector<Distances> distances;    ///< One set for each output, then that of the inner skin if there is one; of
@@ -41,8 +44,13 @@ struct Job {
 };
 
 /// Settles all that depends on the mesh: takes from a scene what the command line leaves open, selects faces, evaluates
-/// distances. `job.outputs` and the precision are left to resolve(). \throw ReadError, InvalidInput, InvalidOption
+/// distances. `job.outputs`, the target and the precision are left to resolve(). \throw ReadError, InvalidInput,
+/// InvalidOption
 Job resolve_options(const Request& request, const Source& source);
+
+/// What the file of a source whose faces are split keeps of coordinates: no more than the source, nor than the file
+/// that it is written to.
+Precision precision_of_refined(const Job& job);
 
 /// Makes a job of a request, all of it. \throw ReadError, InvalidInput, InvalidOption; for a file of heights with its
 /// line

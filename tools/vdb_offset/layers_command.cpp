@@ -72,17 +72,10 @@ void write_surfaces(const Job& job, const LayersResult& layers) {
   const Source& source = job.source;
   for (std::size_t k = 0; k < layers.count(); ++k) {
     const std::string path = name_of_layer(job.request.output, k + 1, layers.count());
-    const io::WriteOptions options = write_options(job.request, path);
     const std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
-    if (source.curves) {
-      write_curves(path, source, surface, options);
-      continue;
-    }
-    if (source.file) {
-      tell_losses(job.request, path, io::write_mesh(path, *source.file, surface, options));
-      continue;
-    }
-    io::write_mesh(path, source.view(), surface, options);
+    if (source.curves) write_curves(path, source, surface, write_options(job.request, path));
+    else if (source.file) tell_losses(job.request, path, io::write_mesh(job.target->at(path), *source.file, surface));
+    else io::write_mesh(job.target->at(path), source.view(), surface);
   }
 }
 

@@ -203,19 +203,6 @@ OffsetResult of_copies(const OffsetResult& result, std::span<const std::uint32_t
   return copies;
 }
 
-/// What the refined source keeps of coordinates: no more than the source, nor than the file that it is written to.
-Precision precision_of_refined(const Job& job) {
-  const std::string& path = job.request.tolerance->refined_source;
-  io::WriteOptions all_digits;
-  if (!path.empty()) all_digits.format = format_of(path, job.request);
-  if (!job.source.file) return path.empty() ? Precision{} : io::precision_of(path, all_digits);
-  const io::MeshFile& file = *job.source.file;
-  // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
-  const bool is_double = file.document || file.precision.kind == Precision::Kind::Double;
-  if (is_double && !path.empty()) return io::precision_of_new(path, file, all_digits);
-  return file.document ? Precision{} : file.precision;
-}
-
 /// Carries out a job with --tolerance. From where the faces are split, the refined source stands for the one read.
 ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar) {
   Tolerance tolerance = job.request.tolerance->tolerance;
@@ -233,9 +220,13 @@ ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar
   scene::Expectations expect = job.expect;
   // A scene says where its own vertices end, and how many of them arrive; there are others now.
   expect.min_reached = expect.max_reached = expect.max_position_error = {};
-  const Job of_refined{.request = job.request,
+  const Request& request = job.request;
+  const Job of_refined{.request = request,
                        .source = refined.source,
                        .options = job.options,
+                       .target = refined.source.file ? io::target_of(request.output, *refined.source.file,
+                                                                     write_options(request, request.output))
+                                                     : job.target,
                        .asked = job.asked,
                        .distances = {results.front().distances},
                        .expect = expect,

@@ -130,17 +130,17 @@ void write_report_and_page(const Job& job, const Outcome& outcome, const Product
   if (!to.html.empty()) write_page(job, outcome, report);
 }
 
-io::WriteResult write_mesh_or_shell(const Source& source, const Outcome& outcome, const std::optional<Shell>& shell,
-                                    const io::WriteOptions& options) {
+io::WriteResult write_mesh_or_shell(const Job& job, const Outcome& outcome, const std::optional<Shell>& shell) {
+  const Source& source = job.source;
   const std::string& path = outcome.to.mesh;
-  if (shell)
-    return source.file ? io::write_shell(path, *source.file, *shell, options) : io::write_shell(path, *shell, options);
   if (source.curves) {
-    write_curves(path, source, outcome.result.positions, options);
+    write_curves(path, source, outcome.result.positions, write_options(job.request, path));
     return {};
   }
-  if (source.file) return io::write_mesh(path, *source.file, outcome.result.positions, options);
-  io::write_mesh(path, source.view(), outcome.result.positions, options);
+  const io::Target target = job.target->at(path);
+  if (shell) return source.file ? io::write_shell(target, *source.file, *shell) : io::write_shell(target, *shell);
+  if (source.file) return io::write_mesh(target, *source.file, outcome.result.positions);
+  io::write_mesh(target, source.view(), outcome.result.positions);
   return {};
 }
 
@@ -283,7 +283,7 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
     made.cad =
         io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to), result.positions, cad_writing(job));
     written.lost = fmt::format("{}", fmt::join(job.source.file->extras, ", "));
-  } else written = write_mesh_or_shell(job.source, outcome, shell, write_options(request, to.mesh));
+  } else written = write_mesh_or_shell(job, outcome, shell);
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   write_report_and_page(job, outcome, made, start);
   tell_losses(request, to.mesh, written);

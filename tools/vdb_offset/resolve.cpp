@@ -119,20 +119,18 @@ std::vector<Distances> distances_of(Job& job) {
   return distances;
 }
 
-/// The precision that the written files keep of positions.
-Precision precision_of(const Job& job) {
+/// The meshes that are written, but for their names.
+std::optional<io::Target> target_of(const Job& job) {
   const Request& request = job.request;
   const bool cells =
       request.layers && (io::volume_format_of(request.output) || io::structured_format_of(request.output));
-  if (cells) return {};
-  if (is_cad_output(request.output, request)) return {};
-  const std::string path = request.layers ? name_of_layer(request.output, 1, job.distances.size()) : request.output;
-  const io::WriteOptions writing = write_options(request, path);
-  if (job.curves()) return io::precision_of_curves(path, *job.source.curves, writing);
-  if (!job.source.file) return io::precision_of(path, writing);
-  const bool makes_anew = job.shell || request.tolerance;
-  return makes_anew ? io::precision_of_new(path, *job.source.file, writing)
-                    : io::precision_of(path, *job.source.file, writing);
+  if (cells || job.curves() || is_cad_output(request.output, request) || is_level_set_output(request.output, request))
+    return std::nullopt;
+  const io::WriteOptions writing = write_options(request, request.output);
+  if (request.iso || !job.source.file) return io::target_of(request.output, writing);
+  const bool has_other_faces = job.shell || request.tolerance;
+  return io::target_of(request.output, *job.source.file, writing,
+                       has_other_faces ? io::Faces::Others : io::Faces::Same);
 }
 
 // Bytes for each byte of a file: its text, what is noted of it to write it again, and the text written; and for that of
@@ -182,11 +180,27 @@ Job resolve_options(const Request& request, const Source& source) {
   return job;
 }
 
+Precision precision_of_refined(const Job& job) {
+  const std::string& path = job.request.tolerance->refined_source;
+  io::WriteOptions all_digits;
+  if (!path.empty()) all_digits.format = format_of(path, job.request);
+  if (!job.source.file) return path.empty() ? Precision{} : io::target_of(path, all_digits).precision;
+  const io::MeshFile& file = *job.source.file;
+  // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
+  const bool is_double = file.document || file.precision.kind == Precision::Kind::Double;
+  if (is_double && !path.empty()) return io::target_of(path, file, all_digits, io::Faces::Others).precision;
+  return file.document ? Precision{} : file.precision;
+}
+
 Job resolve(const Request& request, const Source& source) {
   Job job = resolve_options(request, source);
   if (request.tolerance && (job.shell || job.to_fit))
     throw InvalidOption("--tolerance: expected a scene without a shell or a fit");
-  if (!request.iso) job.options.precision = precision_of(job);
+  job.target = target_of(job);
+  if (job.target) job.options.precision = job.target->precision;
+  else if (job.curves())
+    job.options.precision =
+        io::precision_of_curves(request.output, *source.curves, write_options(request, request.output));
   if (!request.layers) job.outputs = destinations(request, job.asked);
   return job;
 }

@@ -24,9 +24,6 @@ struct Transported {
 /// \throw InvalidOption for something required that the source does not have, or the format no place for.
 VDB_OFFSET_API Transported read_transported(const MeshFile& source, const TransportRequest& request, Format target);
 
-/// The precision of coordinates that write_iso_surface() writes.
-VDB_OFFSET_API Precision precision_of_iso(const std::string& path, const WriteOptions& options = {});
-
 /// Writes a captured mesh: triangles, normals (OBJ, OFF, PLY), and what it takes of the source.
 ///
 /// Colours of a vertex are those of the closest point of the source, interpolated on its face. Each triangle takes the
@@ -34,20 +31,18 @@ VDB_OFFSET_API Precision precision_of_iso(const std::string& path, const WriteOp
 /// corners take the texture coordinates of the points of this chart that are closest to them. So the source's seams
 /// come along, between triangles and as fine as these; which is why OBJ and PLY may have several texture coordinates
 /// for a vertex. In OBJ the faces come material by material.
-/// `captured` was made of the source's polygons. \throw as write_mesh()
-VDB_OFFSET_API WriteResult write_iso_surface(const std::string& path, const MeshFile& source,
-                                             const Transported& transported, const IsoResult& captured,
-                                             const WriteOptions& options = {});
+/// `captured` was made of the source's polygons, for a target that comes from no file. \throw as write_mesh()
+VDB_OFFSET_API WriteResult write_iso_surface(const Target& target, const MeshFile& source,
+                                             const Transported& transported, const IsoResult& captured);
 
 /// Writes an iso-surface of a mesh that comes from no file: triangles and normals. \throw as write_mesh()
-VDB_OFFSET_API void write_iso_surface(const std::string& path, const IsoResult& captured,
-                                      const WriteOptions& options = {});
+VDB_OFFSET_API void write_iso_surface(const Target& target, const IsoResult& captured);
 
 /// Writes a hollow solid: the skin that is its source with the source's faces in their order and all that the format
 /// can hold of them, the other skin, which was captured, with colours and materials of what is closest. OBJ has groups
 /// `outer` and `inner`, PLY a face property `part`, 0 or 1. Without a source that is one of the skins: plain polygons.
 /// \throw as write_mesh()
-VDB_OFFSET_API WriteResult write_hollow(const std::string& path, const MeshFile* source, const Hollow& hollow,
-                                        const IsoResult& captured, const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_hollow(const Target& target, const MeshFile* source, const Hollow& hollow,
+                                        const IsoResult& captured);
 
 }  // namespace vdb_offset::io

@@ -126,38 +126,55 @@ struct WriteResult {
   std::size_t disagreeing_normals = 0;  ///< OBJ normals shared by vertices with different ones now; they get the mean.
 };
 
-/// Writes the mesh with other positions to `path`, through a temporary file that is renamed at the end; "-" is standard
+/// Whether a file that is written has the faces of its source, or others (a shell of it, faces in pieces).
+enum class Faces : bool { Same, Others };
+
+/// A mesh file that is to be written. It is decided once, by target_of(): writers keep to it, and what is offset for it
+/// is judged on what it keeps of coordinates (OffsetOptions::precision).
+struct Target {
+  std::string path;
+  Format format = Format::Obj;
+  Normals normals = Normals::Recompute;
+  Precision precision;
+
+  /// A file like it, of another name.
+  Target at(std::string other) const { return {std::move(other), format, normals, precision}; }
+};
+
+/// A file for the mesh of a source. \throw InvalidInput for an unknown ending, or a format that is only read
+VDB_OFFSET_API Target target_of(const std::string& path, const MeshFile& source, const WriteOptions& options = {},
+                                Faces faces = Faces::Same);
+/// A file for a mesh that comes from no file, or is a new one as an iso-surface is. \throw as above
+VDB_OFFSET_API Target target_of(const std::string& path, const WriteOptions& options = {});
+
+/// Writes the mesh with other positions, through a temporary file that is renamed at the end; the path "-" is standard
 /// output. In the source's own format every byte stays but for the coordinates of vertices that moved and the normals
 /// of faces that moved, which are computed anew from the coordinates as written; binary numbers keep their width. In
 /// another format the file holds positions and faces (STL: triangles) and, as far as the format can, vertex colours,
 /// texture coordinates and normals. A .gltf may have files beside it, which are written with it.
-/// \pre one position a vertex. \throw InvalidInput for an unknown ending, WriteError, ReadError if the source's file
-/// was written to meanwhile.
-VDB_OFFSET_API WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
-                                      const WriteOptions& options = {});
+/// \pre one position a vertex. \throw WriteError, ReadError if the source's file was written to meanwhile.
+VDB_OFFSET_API WriteResult write_mesh(const Target& target, const MeshFile& source, std::span<const Vec3d> positions);
+inline WriteResult write_mesh(const std::string& path, const MeshFile& source, std::span<const Vec3d> positions,
+                              const WriteOptions& options = {}) {
+  return write_mesh(target_of(path, source, options), source, positions);
+}
 
 /// The bytes that write_mesh() writes in the source's own format.
 VDB_OFFSET_API std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions);
 
-/// The precision of coordinates that write_mesh() writes.
-VDB_OFFSET_API Precision precision_of(const std::string& path, const MeshFile& source,
-                                      const WriteOptions& options = {});
-
-/// The same of a mesh that comes from no file.
-VDB_OFFSET_API Precision precision_of(const std::string& path, const WriteOptions& options = {});
-
-/// The precision of coordinates in a file that is made anew of the source where that is a document: of a shell of it,
-/// or of its faces split.
-VDB_OFFSET_API Precision precision_of_new(const std::string& path, const MeshFile& source,
-                                          const WriteOptions& options = {});
-
 /// Writes plain polygons, for meshes that come from no file. PLY: binary, doubles. STL: binary, triangles.
-VDB_OFFSET_API void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {});
+VDB_OFFSET_API void write_mesh(const Target& target, PolygonView polygons);
+inline void write_mesh(const std::string& path, PolygonView polygons, const WriteOptions& options = {}) {
+  write_mesh(target_of(path, options), polygons);
+}
 
 /// Writes polygons with other positions. In formats of triangles they are split as at their own positions.
 /// \pre one position a vertex
-VDB_OFFSET_API void write_mesh(const std::string& path, PolygonView source, std::span<const Vec3d> positions,
-                               const WriteOptions& options = {});
+VDB_OFFSET_API void write_mesh(const Target& target, PolygonView source, std::span<const Vec3d> positions);
+inline void write_mesh(const std::string& path, PolygonView source, std::span<const Vec3d> positions,
+                       const WriteOptions& options = {}) {
+  write_mesh(target_of(path, options), source, positions);
+}
 
 /// A mesh in a file of its triangles alone.
 struct InTriangles {

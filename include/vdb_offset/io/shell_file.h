@@ -21,10 +21,16 @@ namespace vdb_offset::io {
 /// - OFF: the rim's faces have the colours of those at their border.
 /// \pre the shell was made of the source's polygons. \throw as write_mesh(), and InvalidInput for a shell of another
 /// mesh.
-VDB_OFFSET_API WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
-                                       const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_shell(const Target& target, const MeshFile& source, const Shell& shell);
+inline WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
+                               const WriteOptions& options = {}) {
+  return write_shell(target_of(path, source, options, Faces::Others), source, shell);
+}
 
 /// Writes a shell of plain polygons: positions, faces and, in OBJ and PLY, the parts. \throw as write_mesh()
-VDB_OFFSET_API WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options = {});
+VDB_OFFSET_API WriteResult write_shell(const Target& target, const Shell& shell);
+inline WriteResult write_shell(const std::string& path, const Shell& shell, const WriteOptions& options = {}) {
+  return write_shell(target_of(path, options), shell);
+}
 
 }  // namespace vdb_offset::io

@@ -31,7 +31,7 @@ HeldField::Reach HeldField::reach_of(const gp_Pnt& point) const {
   return reach;
 }
 
-void HeldField::tell(const gp_Pnt& point, double share) {
+void HeldField::lower(const gp_Pnt& point, double share) {
   if (share >= 1) return;
   const auto [first, last] = reach_of(point);
   Node node;

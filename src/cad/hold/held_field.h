@@ -21,7 +21,7 @@ class HeldField {
   /// A point counts no farther than this: coefficients within its reach, each as far as it counts itself.
   static constexpr double kFarthest = 8;  // spacings: the diagonal of 4.6
 
-  void tell(const gp_Pnt& point, double share);
+  void lower(const gp_Pnt& point, double share);
   double operator()(const gp_Pnt& point) const;
   /// Whether it is this share at every point that is nearer to this one than to others that were told.
   bool is_even_around(const gp_Pnt& point, double share) const;

@@ -94,7 +94,7 @@ HoldBack::HoldBack(HoldRequest request)
     sign_[face] = most < 0 ? -1 : 1;
   }
   find_neighbours();
-  find_mitres();
+  find_miters();
   find_facing();
 }
 
@@ -127,8 +127,8 @@ void HoldBack::find_neighbours() {
     }
 }
 
-/// What the mitres of sharp edges add to the faces: strips within their planes.
-void HoldBack::find_mitres() {
+/// What the miters of sharp edges add to the faces: strips within their planes.
+void HoldBack::find_miters() {
   std::vector<gp_Pnt> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<int> faces;
@@ -156,7 +156,7 @@ void HoldBack::find_mitres() {
       faces.insert(faces.end(), 2, t.face);
     }
   }
-  mitres_.emplace(points, triangles, faces);
+  miters_.emplace(points, triangles, faces);
 }
 
 /// Finds the faces whose fronts come towards each other.
@@ -207,7 +207,7 @@ std::vector<Opposite> HoldBack::opposites_of(std::size_t face, Masks& masks) con
   std::vector<Opposite> opposites;
   opposites.reserve(2 * masks.size() + 1);
   for (const auto& [key, mask] : masks)
-    for (const Soup* const soup : {&soup_, &*mitres_}) opposites.push_back({soup, &mask, key[0], key[1], kAside});
+    for (const Soup* const soup : {&soup_, &*miters_}) opposites.push_back({soup, &mask, key[0], key[1], kAside});
   if (request_.obstacles) {
     const double beside = is_flat(soup_.faces()[face]) ? 0 : kDeflection * request_.largest;
     opposites.push_back({request_.obstacles, nullptr, 0, request_.clearance + beside, 1});
@@ -215,8 +215,8 @@ std::vector<Opposite> HoldBack::opposites_of(std::size_t face, Masks& masks) con
   return opposites;
 }
 
-/// Tells the field how far the points of a face may go.
-void HoldBack::tell(std::size_t face, HeldField& field, HeldFace& held) {
+/// Samples a face, and lowers the field where an opposite face leaves less room.
+void HoldBack::constrain(std::size_t face, HeldField& field, HeldFace& held) {
   if (most_[face] == 0) return;
   Masks masks;
   for (const Opposite& each : opposites_of(face, masks)) {
@@ -239,8 +239,8 @@ void HoldBack::tell(std::size_t face, HeldField& field, HeldFace& held) {
     if (is_even) held.even = std::min(held.even, least);
     for (auto& [at, share] : told) {
       if (is_even) share = least;
-      field.tell(at.point, share);
-      tell_beyond(at, share, most_[face], field);
+      field.lower(at.point, share);
+      constrain_beyond(at, share, most_[face], field);
       held.places.push_back(at);
     }
   }
@@ -256,7 +256,7 @@ double HoldBack::share_at(std::size_t face, const SourcePlace& at, Opposite oppo
 }
 
 /// Goes on where the face ends and is drawn out to meet others.
-void HoldBack::tell_beyond(const SourcePlace& at, double share, double most, HeldField& field) const {
+void HoldBack::constrain_beyond(const SourcePlace& at, double share, double most, HeldField& field) const {
   const Soup::Triangle& t = soup_.triangles()[static_cast<std::size_t>(at.triangle)];
   const double apart = HeldField::kSampling * spacing_;
   for (int k = 0; k < 3; ++k) {
@@ -273,7 +273,7 @@ void HoldBack::tell_beyond(const SourcePlace& at, double share, double most, Hel
     for (const double aside : {-1.0, 0.0, 1.0}) {
       const gp_Vec way = (away + along * aside).Normalized();
       for (double gone = apart; gone <= kBeyond * most; gone += apart)
-        field.tell(at.point.Translated(way * gone), share);
+        field.lower(at.point.Translated(way * gone), share);
     }
   }
 }
@@ -318,7 +318,7 @@ std::vector<FaceDistance> HoldBack::distances() {
   for (std::size_t face = 0; face < result.size(); ++face) {
     auto& field = fields[piece_[face]];
     if (!field) field = std::make_shared<HeldField>(spacing_);
-    tell(face, *field, all[face]);
+    constrain(face, *field, all[face]);
   }
   for (std::size_t face = 0; face < result.size(); ++face) {
     const std::shared_ptr<HeldField>& field = fields[piece_[face]];

@@ -44,12 +44,12 @@ class HoldBack {
   /// Faces that are opposite to one, by their speed and by how far to stay away from them.
   using Masks = std::map<std::array<double, 2>, std::vector<char>>;
   void find_neighbours();
-  void find_mitres();
+  void find_miters();
   void find_facing();
   std::vector<Opposite> opposites_of(std::size_t face, Masks& masks) const;
-  void tell(std::size_t face, HeldField& field, HeldFace& held);
+  void constrain(std::size_t face, HeldField& field, HeldFace& held);
   double share_at(std::size_t face, const SourcePlace& at, Opposite opposite) const;
-  void tell_beyond(const SourcePlace& at, double share, double most, HeldField& field) const;
+  void constrain_beyond(const SourcePlace& at, double share, double most, HeldField& field) const;
   bool is_reached(std::size_t face, const std::vector<HeldFace>& all) const;
   FaceDistance held_distance(std::size_t face, const std::shared_ptr<const HeldField>& field,
                              const HeldFace& held) const;
@@ -62,7 +62,7 @@ class HoldBack {
   std::vector<std::vector<int>> triangles_;  // of each face
   std::set<std::array<int, 2>> neighbours_, pairs_;
   std::map<std::array<int, 2>, std::array<int, 2>> sides_;  // of faces, by their nodes: the triangles there, or -1
-  std::optional<Soup> mitres_;
+  std::optional<Soup> miters_;
   std::set<std::array<int, 2>> joints_;  // sides of triangles across which a face is joined smoothly, by their nodes
   std::size_t held_ = 0;
   double least_ = 1;

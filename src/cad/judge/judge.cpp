@@ -29,13 +29,13 @@
 namespace vdb_offset::cad {
 namespace {
 
-// Farthest that a mitre may reach, in distances: edges of 10 degrees.
+// Farthest that a miter may reach, in distances: edges of 10 degrees.
 constexpr double kLongestMitre = 12;
 
 // The angle of faces that do not touch.
 constexpr double kSharp = 0.02;
 
-// How far from a sharp edge its mitre is looked for over other faces.
+// How far from a sharp edge its miter is looked for over other faces.
 constexpr double kMitreOverFace = 3;
 
 // Points that are held against the exact shape where its tessellation leaves doubt. More doubt than that is none.
@@ -226,7 +226,7 @@ class Judge {
     is_closed_ = was.open == 0;
   }
 
-  // Walls that have passed each other by less than triangles tell: who reads the file takes the inner shell for the
+  // Walls that have passed each other by less than triangles tell: readers would take the inner shell for the
   // outer one.
   void check_turned_round() {
     const double was = volume_of(source_), made = volume_of(made_), is = volume_of(result_);
@@ -260,7 +260,7 @@ class Judge {
     for (const SoupPoint& p : points) {
       SoupPoint foot = source.closest(p.point);
       double share = foot.distance / far_;
-      // Beyond a sharp edge its mitre may lie over the inside of a third face: of much of a thin wall's two sides.
+      // Beyond a sharp edge its miter may lie over the inside of a third face: of much of a thin wall's two sides.
       const auto is_mitred = [&] { return share > 1 + options_.tolerance && mitred_.has_near(p.point); };
       foot.is_inside = foot.is_inside && !is_mitred();
       if ((share < 1 - options_.tolerance || (foot.is_inside && share > 1 + options_.tolerance)) &&
@@ -333,7 +333,7 @@ class Judge {
       const double way = result.closest(moved).distance / far_;
       if (way > worst) place = text_of(moved) + place_of(source, p, result, result.closest(moved));
       worst = std::max(worst, way);
-      if (way <= options_.tolerance || mitred_.has_near(moved)) continue;  // A mitre may reach over it.
+      if (way <= options_.tolerance || mitred_.has_near(moved)) continue;  // A miter may reach over it.
       if (doubts++ < kMostDoubts)
         missing += exact_distance(source_faces_, moved) > far_ * (1 - 1e-3) &&
                    exact_distance(result_faces_, moved) > far_ * options_.tolerance;

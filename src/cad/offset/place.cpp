@@ -132,7 +132,7 @@ gp_Vec start_normal(const Model& model, int half) {
   return outside(model.faces[h.face], h.origin);
 }
 
-gp_Pnt mitre_point(const Model& model, const gp_Pnt& source, const std::vector<int>& halves) {
+gp_Pnt miter_point_of(const Model& model, const gp_Pnt& source, const std::vector<int>& halves) {
   double a[3][3] = {}, b[3] = {};
   for (int h : halves) {
     const gp_Vec n = start_normal(model, h);
@@ -242,7 +242,7 @@ bool place_apex(Model& model, ModelVertex& v) {
 // Finds where all that the vertex lies on meets, and the ends of smooth edges there.
 void meet_at(Model& model, ModelVertex& v, const std::vector<int>& spokes) {
   std::vector<Support> supports = supports_of(model, v.ring, spokes);
-  v.point = mitre_point(model, v.source, v.ring);
+  v.point = miter_point_of(model, v.source, v.ring);
   // Another try starts from the source, not from where the last one ended.
   for (int h : v.ring) model.halves[h].start = model.halves[h].origin;
   if (v.has_near) {
@@ -250,7 +250,7 @@ void meet_at(Model& model, ModelVertex& v, const std::vector<int>& spokes) {
     for (Support& s : supports)
       if (s.curve.IsNull()) s.uv = project(*s.surface, v.point, s.uv);
   }
-  // Curves begin where the mitre's foot is, not at the source's vertex: fillets are about as small as the distance.
+  // Curves begin where the miter's foot is, not at the source's vertex: fillets are about as small as the distance.
   v.residual = meet(supports, v.point);
   std::size_t at = 0;
   for (int s : spokes)

@@ -46,6 +46,6 @@ void spread_vertex(Model& model, int vertex);
 
 /// The point where the three or more planes of faces meet: least squares, and the shortest way where they leave a
 /// choice.
-gp_Pnt mitre_point(const Model& model, const gp_Pnt& source, const std::vector<int>& halves);
+gp_Pnt miter_point_of(const Model& model, const gp_Pnt& source, const std::vector<int>& halves);
 
 }  // namespace vdb_offset::cad

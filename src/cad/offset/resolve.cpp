@@ -99,12 +99,12 @@ class Splitter {
     // the side of the triangle's own edges.
     for (double way : {0.0, 0.5, 1.5, 4.0}) {
       std::vector<Support> supports = supports_of(model_, corners, sides);
-      const gp_Pnt mitre = mitre_point(model_, source_, corners);
-      p.point = mitre.Translated(along * (way * tolerances_.distance));
+      const gp_Pnt miter = miter_point_of(model_, source_, corners);
+      p.point = miter.Translated(along * (way * tolerances_.distance));
       for (Support& s : supports)
         if (s.curve.IsNull()) s.uv = project(*s.surface, p.point, s.uv);
       p.is_good = meet(supports, p.point) < tolerances_.gap;
-      const gp_Vec moved(mitre, p.point);
+      const gp_Vec moved(miter, p.point);
       if (p.is_good && (moved.Magnitude() < 0.5 * tolerances_.distance || moved.Dot(along) > 0)) break;
     }
     start_[t] = p.point;
@@ -335,7 +335,7 @@ bool resolve_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   const auto is_far = [&] {
     // Of more than three faces that touch each other at the vertex the offsets may meet far off, to one side of it.
     const ModelVertex& v = model.vertices[vertex];
-    return n > 3 && !v.is_open && v.point.Distance(mitre_point(model, v.source, v.ring)) > tolerances.distance;
+    return n > 3 && !v.is_open && v.point.Distance(miter_point_of(model, v.source, v.ring)) > tolerances.distance;
   };
   place_vertex(model, vertex, tolerances);
   if (model.vertices[vertex].residual <= tolerances.gap && !is_far()) return true;

@@ -20,7 +20,7 @@ constexpr double kNoDirection = 1e-10;
 constexpr double kNoWidth = 1e-9;
 // Steps of a search that starts beside its end: they square the error.
 constexpr int kMostSearchSteps = 20;
-// How far a search may leave the range of a face's parameters, as a share of it: points of mitres lie outside.
+// How far a search may leave the range of a face's parameters, as a share of it: points of miters lie outside.
 constexpr double kBeyond = 0.25;
 
 /// The angle that is the nearest to `near` of those that differ by whole turns.

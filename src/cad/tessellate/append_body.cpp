@@ -9,7 +9,7 @@ namespace vdb_offset::cad {
 namespace {
 
 // Faces whose normals differ by less meet smoothly. Files keep directions and trimming curves to some 1e-3 of a radian,
-// and approximated fillets are off by tenths of a degree; and a mitre of a degree is only 4e-5 longer than the
+// and approximated fillets are off by tenths of a degree; and a miter of a degree is only 4e-5 longer than the
 // distance.
 constexpr double kSharpAngle = std::numbers::pi / 180;
 // How far from a pole, as a share of the way to the triangle's middle, its normal there is taken.

@@ -32,10 +32,14 @@ constexpr std::size_t kMostGaps = 8;    // that are told
 constexpr unsigned kMostTrimming = 60;  // seconds, of a trial
 constexpr unsigned kMostHolding = 120;  // seconds, of the whole model with its faces held back
 
-/// What is tried: the whole model, and if that is not good its faces or triangles; the whole model or nothing, trimmed
-/// where faces cross, of edges that have been taken out as far as they are swallowed, or have not; faces or triangles
-/// alone; or triangles alone.
-enum class Attempt { Whole, Trimmed, TrimmedAll, Rest, Facets };
+/// What is tried.
+enum class Attempt {
+  Whole,       ///< All bodies; faces or triangles of those that are not good.
+  Trimmed,     ///< All bodies, crossing faces trimmed, swallowed edges taken out first; or nothing.
+  TrimmedAll,  ///< As above, with no edge taken out.
+  Rest,        ///< Faces or triangles alone.
+  Facets,      ///< Triangles alone.
+};
 
 bool is_trial(Attempt attempt) { return attempt == Attempt::Trimmed || attempt == Attempt::TrimmedAll; }
 

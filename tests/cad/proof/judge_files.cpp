@@ -166,7 +166,7 @@ class FileJudge {
   }
 
   /// A point just before the offset is nearer than the distance, where none of the result's solid may begin (or,
-  /// outward, all is solid); one just behind it is solid inward and outward not, but where a mitre reaches over it.
+  /// outward, all is solid); one just behind it is solid inward and outward not, but where a miter reaches over it.
   void check_points_beside() {
     Numbers numbers(3);
     const int each = std::max(2, points_.beside / std::max<int>(1, static_cast<int>(source_.faces.size())));

@@ -46,8 +46,8 @@ struct ConstrainedSurface {
   std::span<const std::uint8_t> bound;         ///< Of each vertex: 1 if it must not leave its path.
   const Obstacles* obstacles = nullptr;        ///< Obstacles to keep away from, if there are any.
   bool off_source = false;                     ///< Moved faces must not meet the source either, as in a shell.
-  /// Number of the mesh's faces, if what is off the moving part rests as a whole while layers rise from it: vertices at
-  /// the border then go along resting faces instead of taking them along. 0: they take the faces along.
+  /// Faces with a smaller index than this, and not on the moving part, stay fixed, as while layers rise: vertices at
+  /// the border go along them. 0: border faces are carried along.
   std::size_t resting_faces = 0;
   bool with_rim = false;  ///< A shell's rim joins the borders of both skins; what meets it is a fault, too.
   /// Of each vertex: its position in the other skin of a shell, world coordinates, which moved faces must not meet.

@@ -80,8 +80,8 @@ class MiterFinder {
   std::vector<Miter> operator()(const Distances& distances, MiterFacts& facts, const OwnDistances* own = nullptr) const;
   /// Of each vertex of the surface: whether it is on a crease.
   const std::vector<std::uint8_t>& on_crease() const { return on_crease_; }
-  /// All miters that are no nearer to the surface than the distance, proven or not: to tell where somebody else has put
-  /// vertices.
+  /// All miters that are no nearer to the surface than the distance, proven or not: to recognise those in an offset
+  /// that another program has made.
   std::vector<Miter> all(const Distances& distances, const OwnDistances* own = nullptr) const;
 
  private:

@@ -83,9 +83,9 @@ class VertexMarch {
     return KnownEnd{path.corners[path.count - 1], path.end.distance, path.end.triangle};
   }
 
-  /// Follows the direction field, and calls tell(stop, arrival) for each stop distance. \pre `stops` rise
-  template <class Tell>
-  void march(std::span<const StopDistance> stops, Tell&& tell) {
+  /// Follows the direction field, and calls report(stop, arrival) for each stop distance. \pre `stops` rise
+  template <class Report>
+  void march(std::span<const StopDistance> stops, Report&& report) {
     // Stops before the first step are on the way to it, unless that ends at an obstacle.
     VDB_OFFSET_ASSERT(!stops.empty() && std::is_sorted(stops.begin(), stops.end(), [](const auto& a, const auto& b) {
       return a.distance < b.distance;
@@ -94,10 +94,10 @@ class VertexMarch {
     const auto first = leave_surface(first_step());
     target_ = stops.front().distance;
     if (!first || (guard_ && guard_->stop(origin_, first->x) != first->x)) {
-      for (const StopDistance& stop : stops) tell(stop, Arrival{origin_, hint_});
+      for (const StopDistance& stop : stops) report(stop, Arrival{origin_, hint_});
       return;
     }
-    march_on(*first, stops, tell);
+    march_on(*first, stops, report);
   }
 
   /// From now on the path's corners are noted down, after these.
@@ -109,10 +109,10 @@ class VertexMarch {
   }
 
   /// Marches to one stop distance from a position on the path, if the distance still rises there, so that no ridge has
-  /// been passed, and nothing lies between it and the vertex; else tells of no end. `triangle` is the closest to the
+  /// been passed, and nothing lies between it and the vertex; else reports no end. `triangle` is the closest to the
   /// position.
-  template <class Tell>
-  void march_from(const Vec3d& position, std::uint32_t triangle, const StopDistance& stop, Tell&& tell) {
+  template <class Report>
+  void march_from(const Vec3d& position, std::uint32_t triangle, const StopDistance& stop, Report&& report) {
     target_ = stop.distance;
     hint_ = triangle;
     outside_ = false;
@@ -125,7 +125,7 @@ class VertexMarch {
         !is_line_free(direction, slope, length - first.phi, first_step()))
       return;
     hint_ = triangle;
-    march_on(first, {&stop, 1}, tell);
+    march_on(first, {&stop, 1}, report);
   }
 
  private:
@@ -179,30 +179,30 @@ class VertexMarch {
 
   /// Steps along the direction field until all stops are told: where the distance is a stop's, at an obstacle, or, when
   /// the distance has not risen for kPatience, at its maximum on the path (climb()).
-  template <class Tell>
-  void march_on(const Sample& first, std::span<const StopDistance> stops, Tell&& tell) {
+  template <class Report>
+  void march_on(const Sample& first, std::span<const StopDistance> stops, Report&& report) {
     const double last = stops.back().distance;
     Sample before{origin_, 0, Vec3d(0.0), hint_, Feature::Face}, here = first;
     PathMaximum largest{before, here, here, corner_count()};
     for (int i = 0;; ++i) {
       while (!stops.empty() && (here.phi >= target_ || arrived(here.phi)))
-        tell_first_of(stops, arrived(here.phi) ? here : cut(before, here), tell);
+        report_first_of(stops, arrived(here.phi) ? here : cut(before, here), report);
       if (stops.empty()) return;
       if (i == kMaxSteps || !(largest.since_growth < kPatience * last)) break;
       if (trace_) trace_->push_back(here.x - origin_);
       double step = longest_step(here.phi, last);
       const Vec3d ahead = runge_kutta(here, step), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
-      tell_stops_before(to, here, stops, tell);
+      report_stops_before(to, here, stops, report);
       if (stops.empty()) return;
       const Sample next = measure(to);
       largest.add_step(here, next, step, corner_count());
       before = here;
       here = next;
-      if (to != ahead) return tell_blocked(before, here, stops, tell);
+      if (to != ahead) return report_blocked(before, here, stops, report);
     }
     const Sample end = climb(largest);
     if (trace_) trace_->resize(largest.corners);
-    for (const StopDistance& stop : stops) tell_of(end, stop, tell);
+    for (const StopDistance& stop : stops) report_at(end, stop, report);
   }
 
   std::size_t corner_count() const { return trace_ ? trace_->size() : 0; }
@@ -215,19 +215,20 @@ class VertexMarch {
                      std::max(last - phi, kLeastStep * std::min(h_, last))});
   }
 
-  /// Tells of the end at the first of the stops, and goes on to the next one, if there is any.
-  template <class Tell>
-  void tell_first_of(std::span<const StopDistance>& stops, const Sample& end, Tell&& tell) {
-    tell_of(end, stops.front(), tell);
+  /// Reports the end at the first of the stops, and goes on to the next one, if there is any.
+  template <class Report>
+  void report_first_of(std::span<const StopDistance>& stops, const Sample& end, Report&& report) {
+    report_at(end, stops.front(), report);
     stops = stops.subspan(1);
     if (!stops.empty()) target_ = stops.front().distance;
   }
 
-  /// Tells of the stops that lie on a step, as far as the closest triangles tell.
-  template <class Tell>
-  void tell_stops_before(const Vec3d& end, const Sample& from, std::span<const StopDistance>& stops, Tell&& tell) {
+  /// Reports each stop distance crossed by this step, using the closest triangles of its ends.
+  template <class Report>
+  void report_stops_before(const Vec3d& end, const Sample& from, std::span<const StopDistance>& stops,
+                           Report&& report) {
     for (auto at = stop_before(end, from); at; at = stop_before(end, *at)) {
-      tell_first_of(stops, *at, tell);
+      report_first_of(stops, *at, report);
       if (stops.empty()) return;
     }
   }
@@ -248,17 +249,17 @@ class VertexMarch {
     return std::nullopt;
   }
 
-  template <class Tell>
-  void tell_of(const Sample& end, const StopDistance& stop, Tell&& tell) const {
-    tell(stop, Arrival{end.x, end.triangle, outside_});
+  template <class Report>
+  void report_at(const Sample& end, const StopDistance& stop, Report&& report) const {
+    report(stop, Arrival{end.x, end.triangle, outside_});
   }
 
   /// Tells of a path that an obstacle ends at `end`; some stops may lie before that.
-  template <class Tell>
-  void tell_blocked(const Sample& before, const Sample& end, std::span<const StopDistance> stops, Tell&& tell) {
+  template <class Report>
+  void report_blocked(const Sample& before, const Sample& end, std::span<const StopDistance> stops, Report&& report) {
     for (const StopDistance& stop : stops) {
       target_ = stop.distance;
-      tell_of(end.phi > target_ ? cut(before, end) : end, stop, tell);
+      report_at(end.phi > target_ ? cut(before, end) : end, stop, report);
     }
   }
 

@@ -85,7 +85,7 @@ class CurveWall final : public LayerWall {
 
 LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> heights, CurveFaults& faults,
                         Paths& paths, const ProgressCallback& callback) {
-  // Rounds after which progress is told to be complete; more of them are told as that. Not measured.
+  // Progress shows 100 % after this many rounds. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
   const double z = curves.line().vertices.front()[2] + curves.line().origin[2];

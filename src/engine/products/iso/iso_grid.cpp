@@ -51,10 +51,10 @@ class IsoRasteriser {
     for (;; width /= 2) {
       keep_reached(cubes, width);
       if (cubes.size() > most)
-        throw OutOfBudget(
-            fmt::format("iso-surface: expected a surface in no more than {} leaf nodes, got one that passes through more "
-                        "than {} cubes of {} voxels (a larger voxel size needs fewer)",
-                        most, cubes.size(), width));
+        throw OutOfBudget(fmt::format(
+            "iso-surface: expected a surface in no more than {} leaf nodes, got one that passes through more "
+            "than {} cubes of {} voxels (a larger voxel size needs fewer)",
+            most, cubes.size(), width));
       if (width == kLeafWidth) return cubes;
       std::vector<Cube> octants;
       octants.reserve(8 * cubes.size());

@@ -96,10 +96,10 @@ void require_fine_coordinates(const MeshFacts& facts, const IsoOptions& options,
   const double rounding =
       Rounding(options.precision).half_unit() * (farthest_coordinate(facts) + std::abs(options.distance));
   if (rounding <= kMostVoxels * h) return;
-  throw InvalidInput(
-      fmt::format("iso-surface: expected coordinates that are rounded by less than {:g} voxels of {:.6g}, got {:.3g} (move "
-                  "the model to the origin, write more digits, or take larger voxels)",
-                  kMostVoxels, h, rounding));
+  throw InvalidInput(fmt::format(
+      "iso-surface: expected coordinates that are rounded by less than {:g} voxels of {:.6g}, got {:.3g} (move "
+      "the model to the origin, write more digits, or take larger voxels)",
+      kMostVoxels, h, rounding));
 }
 
 }  // namespace
@@ -120,15 +120,15 @@ IsoPlan plan_voxels(const Surface& surface, const IsoOptions& options, bool is_s
   require_fine_coordinates(surface.facts, options, plan.voxel_size);
   if (fits_budget(plan, options, surface.facts)) return plan;
   const bool is_finest = options.off_source && !grid.voxel_size && !grid.voxels_per_distance;
-  throw OutOfBudget(
-      fmt::format("iso-surface: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "
-                  "about {:.0f} MiB in {} leaf "
-                  "nodes with voxel size {:.6g} ({})",
-                  options.max_memory ? static_cast<double>(options.max_memory) / 1048576.0 : 0x1p42,
-                  static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size,
-                  is_finest ? "half the distance, so that skins do not meet: thicker walls need less, and so does a "
-                              "larger --voxel-size, with which they may meet"
-                            : "a larger voxel size needs less"));
+  throw OutOfBudget(fmt::format(
+      "iso-surface: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "
+      "about {:.0f} MiB in {} leaf "
+      "nodes with voxel size {:.6g} ({})",
+      options.max_memory ? static_cast<double>(options.max_memory) / 1048576.0 : 0x1p42,
+      static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size,
+      is_finest ? "half the distance, so that skins do not meet: thicker walls need less, and so does a "
+                  "larger --voxel-size, with which they may meet"
+                : "a larger voxel size needs less"));
 }
 
 }  // namespace vdb_offset

@@ -281,7 +281,7 @@ bool GrowthColumns::rises_everywhere(std::size_t column, const VertexStacks& sta
   return true;
 }
 
-/// Whether the cells of a column are valid by the measures that are told of them once they are made.
+/// Whether the column's cells will pass the quality measures that are reported for them.
 bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const {
   thread_local ColumnMesh cells;
   thread_local std::vector<std::uint32_t> ring, numbers;

@@ -252,7 +252,7 @@ class SurfaceWall final : public LayerWall {
 LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& callback) {
-  // Rounds after which progress is told to be complete; more of them are told as that. Not measured.
+  // Progress shows 100 % after this many rounds. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds);
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());

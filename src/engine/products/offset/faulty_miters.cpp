@@ -14,8 +14,8 @@
 namespace vdb_offset {
 namespace {
 
-// Of the mitred corners of a fault those with the least area around them go back, and those with no more than so many
-// times that: a narrow slot then costs its own miters, and not those at the far corners of the plate around it. Not
+// Of a fault's mitred corners, the one with the least area around it loses its miter, and those with up to this many
+// times its area: a narrow slot then costs its own miters, and not those at the far corners of the plate around it. Not
 // measured.
 constexpr double kAlike = 4;
 // Miters that have been taken back are tried again in so many rounds, one in kTriedEvery of them at a time, each twice:

@@ -82,7 +82,8 @@ GridPlan plan_run(const MeshParts& parts, PolygonView mesh, const Reach& farthes
 }
 
 WeldOptions weld_for(const OffsetOptions& options, const Yield& yield) {
-  // Cells stand on whole faces. At the edge of a part, what moves would be split where what stays has a vertex.
+  // Hanging vertices are not joined for layers, as cells need whole faces, nor for parts, as the moving side would be
+  // split and the resting side not.
   return options.only.empty() && yield.layers == 0 && !yield.by_corner ? options.weld : options.weld.without_joins();
 }
 

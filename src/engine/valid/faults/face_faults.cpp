@@ -124,9 +124,9 @@ void FaceFaults::find_folded() {
   });
 }
 
-Indices FaceFaults::caught() {
-  Indices caught;
-  if (!source_finder_) return caught;
+Indices FaceFaults::unmovable_folds() {
+  Indices unmovable;
+  if (!source_finder_) return unmovable;
   if (folded_.empty()) find_folded();
   for (const auto t : faulty_) {
     const auto& corners = surface_.triangles[t];
@@ -134,10 +134,10 @@ Indices FaceFaults::caught() {
     if (!folded || fault_[t] != Fault::Crowded) continue;
     for (const auto s : source_finder_->met_by(t, positions_.all()))
       for (const auto v : surface_.triangles[s])
-        if (folded_[v] && std::find(corners.begin(), corners.end(), v) != corners.end()) caught.push_back(v);
+        if (folded_[v] && std::find(corners.begin(), corners.end(), v) != corners.end()) unmovable.push_back(v);
   }
-  sort_unique(caught);
-  return caught;
+  sort_unique(unmovable);
+  return unmovable;
 }
 
 }  // namespace vdb_offset

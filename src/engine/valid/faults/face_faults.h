@@ -49,7 +49,7 @@ class FaceFaults {
   void judge_again(const Indices& triangles, Known&& known);
 
   /// Folded vertices (see is_folded()) of crowded faces that meet the source around them.
-  Indices caught();
+  Indices unmovable_folds();
   /// Finds what meets the skin of a shell that does not move. \pre there is one
   const CrossingFinder& other_skin() const { return other_skin_finder_ ? *other_skin_finder_ : *source_finder_; }
 
@@ -70,7 +70,7 @@ class FaceFaults {
   const SourceCrossings& source_crossings_;
   std::vector<Fault> fault_;  // of each triangle
   Indices faulty_;
-  std::vector<std::uint8_t> folded_;                 // of each vertex; empty until caught() needs it
+  std::vector<std::uint8_t> folded_;                 // of each vertex; empty until unmovable_folds() needs it
   std::optional<CrossingFinder> source_finder_;      // where moved faces must not meet the source
   std::optional<CrossingFinder> other_skin_finder_;  // where a shell's other skin is not the source
   std::optional<ClearanceFinder> clearance_;         // if there are obstacles

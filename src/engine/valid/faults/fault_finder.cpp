@@ -75,7 +75,7 @@ void FaultFinder::Parts::find_misplaced(const Indices& moved) {
   replace_members(misplaced, moved, [&](std::uint32_t v) { return positions.is_misplaced(v); });
 }
 
-/// To be called right after the update of the pairs, as the rim asks which triangles that one was told of.
+/// To be called right after the update of the pairs, as the rim asks which triangles that one was called for.
 void FaultFinder::Parts::find_rim_crossings(const Indices& moved, const Indices& touched) {
   if (rim) rim->find(moved, touched, pairs.finder(), faces.other_skin(), pairs.source_crossings());
 }

@@ -92,8 +92,8 @@ class FaultFinder {
   }
   /// What is wrong with each of the input's `count` faces; empty if nothing is. What a rim meets does not count.
   std::vector<FaceFault> of_faces(std::size_t count) const;
-  /// Folded vertices (see is_folded()) whose faces meet the source around them: that only ends if they stay on it.
-  Indices caught() { return parts_->faces.caught(); }
+  /// Folded vertices (see is_folded()) whose faces cross the source; only putting them back on the source removes that.
+  Indices unmovable_folds() { return parts_->faces.unmovable_folds(); }
   /// Misplaced vertices, and corners of all faults.
   Indices faulty_vertices();
 

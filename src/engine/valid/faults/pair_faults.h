@@ -28,7 +28,7 @@ class PairFaults {
   PairFaults(const ConstrainedSurface& constrained, const VertexPositions& positions,
              std::optional<SelfCrossings> source_crossings);
 
-  /// To be told of triangles whose corners have moved: forgets the pairs that they are part of. These are found again
+  /// Call for triangles whose corners have moved: forgets the pairs that they are part of. These are found again
   /// by exactly one call of the update that is returned. \pre sorted, each once
   [[nodiscard]] Update update(const Indices& moved);
 

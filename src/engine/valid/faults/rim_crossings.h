@@ -29,7 +29,7 @@ class RimCrossings {
 
   /// Finds anew what the rim meets around vertices that have moved. The finders are those of both skins.
   /// \param touched the triangles around the moved vertices; \pre both sorted, each once
-  /// \pre the last update of `skin` was told of `touched`
+  /// \pre `skin.update(touched)` was the last update of `skin`
   void find(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> touched, const CrossingFinder& skin,
             const CrossingFinder& other_skin, const SourceCrossings& source_crossings);
 

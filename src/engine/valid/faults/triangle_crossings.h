@@ -44,7 +44,7 @@ class CrossingFinder {
   /// \param positions of the surface's vertices; they may lie anywhere
   CrossingFinder(const Surface& surface, std::span<const Vec3d> positions);
 
-  /// To be told of triangles whose corners have moved. \pre sorted, each once
+  /// Call for triangles whose corners have moved. \pre sorted, each once
   void update(std::span<const std::uint32_t> triangles);
   /// Whether a triangle was among those of the last update.
   bool is_updated(std::uint32_t triangle) const { return is_updated_[triangle]; }

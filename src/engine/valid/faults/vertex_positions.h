@@ -23,9 +23,10 @@ inline Vec3d twice_area(const std::array<std::uint32_t, 3>& triangle, std::span<
 
 /// Where the vertices of an offset stand, as they are moved about, and where the moving part is from there.
 ///
-/// All is told of positions as they will be written, and by these alone: neither what was known of other positions nor
-/// the order of a search has an influence. A position may be as near to several points of the moving part, as on the
-/// middle sheet of a wall: then a face is to look away from each of them, and a vertex is on the side that any tells.
+/// Everything is evaluated at positions as they will be written, and at these alone: neither what was known of other
+/// positions nor the order of a search has an influence. A position may be as near to several points of the moving
+/// part, as on the middle sheet of a wall: then a face is to look away from each of them, and a vertex counts as
+/// outside if any of these points has it outside.
 class VertexPositions {
  public:
   /// What is known of the moving part near a vertex: Found, the closest point of the triangles around the one that a

@@ -49,7 +49,7 @@ class BlockedMoves {
       if (has_moved(v)) block(v, kNone, kNone);
   }
 
-  /// To be told of each vertex that keeps the share that it had in the last note().
+  /// Call for each vertex that keeps the share that it had in the last note().
   void note_change(std::uint32_t v) { of_[v].changed = trial_; }
 
  private:

@@ -21,8 +21,8 @@ constexpr double kFarthestBeside = 4;
 // So many times as far off as they are now the faces around a vertex may be with it at a place, which may be better
 // once others have moved, or worth it to a settled vertex. See docs/dev/tuning.md for this and what is above.
 constexpr double kWorseBeside = 1.2;
-// Share of that which a collided vertex has to come down to: it goes where that helps much, else it stays in the middle
-// between the fronts that have met. With 1, plates_closing has a ring of vertices pulled out of the gap.
+// A collided vertex is moved only if the error around it falls below this share of the present one; else it stays in
+// the middle between the fronts that have met. With 1, plates_closing has a ring of vertices pulled out of the gap.
 constexpr double kCollidedWins = 0.8;
 // Passes; after the first, only vertices around those that have moved are looked at, so that few take long.
 constexpr std::uint64_t kMostPasses = 20;

@@ -11,11 +11,11 @@
 namespace vdb_offset {
 namespace {
 
-// In the first of so many rounds of the first pass all vertices are tried, else one in kTrialEvery, others in each, as
+// The first round of the first pass tries every vertex; each later one another third of them, chosen by hash, as
 // vertices that move together get into each other's way. See docs/dev/tuning.md.
 constexpr std::uint64_t kTrialRounds = 40, kTrialEvery = 3;
-// Of a fault's corners that have moved those with the least area around them go back first, and those with no more than
-// so many times that. Not measured.
+// Of a fault's corners that have moved, the one with the least area around it goes back first, and those with up to
+// this many times its area. Not measured.
 constexpr double kAlikeAround = 4;
 
 }  // namespace
@@ -92,7 +92,7 @@ Indices PlaceTrials::restore_faulty(OldOnes& moved) {
   });
   for (const auto v : state_.faults.misplaced()) gather(v);
   state_.faults.for_each_faulty_corner(gather, [](std::uint32_t) { return true; });  // of a rim alone
-  for (const auto v : state_.faults.caught()) gather(v);
+  for (const auto v : state_.faults.unmovable_folds()) gather(v);
   Indices back = state_.gathered.take();
   for (const auto v : back) {
     const Old& old = *find(v);

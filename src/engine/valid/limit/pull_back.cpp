@@ -43,7 +43,7 @@ Indices vertices_to_pull(LimitState& state, std::uint32_t pinned) {
   });
   for (const auto v : faults.misplaced()) gather(v);
   faults.for_each_faulty_corner(gather, [](std::uint32_t) { return true; });  // of a rim alone
-  for (const auto v : state.faults.caught()) gather(v);
+  for (const auto v : state.faults.unmovable_folds()) gather(v);
   Indices pulled = gathered.take();
   std::erase_if(pulled, [&](std::uint32_t v) { return !may_go_back(v); });
   return pulled;
@@ -52,7 +52,7 @@ Indices vertices_to_pull(LimitState& state, std::uint32_t pinned) {
 bool pull_back(LimitState& state) {
   const Indices vertices = vertices_to_pull(state);
   if (vertices.empty()) return false;
-  const Indices caught = state.faults.caught();
+  const Indices unmovable = state.faults.unmovable_folds();
   const Indices unmitred = state.take_miters_back(vertices);
   for (const auto v : vertices) {
     if (std::binary_search(unmitred.begin(), unmitred.end(), v)) continue;
@@ -61,7 +61,7 @@ bool pull_back(LimitState& state) {
     state.pulled.push_back(v);
   }
   // A vertex that cannot leave the source at all goes back at once, so that its neighbours need not follow it there.
-  for (const auto v : caught) state.share[v] = 0;
+  for (const auto v : unmovable) state.share[v] = 0;
   sort_unique(state.pulled);
   state.move(vertices);
   ++state.statistics.rounds;

@@ -18,8 +18,8 @@ namespace {
 // share of the live area that is won.
 constexpr std::size_t kMostFaults = 150;
 constexpr double kWorthLosing = 0.8;
-// With Aim::Distance up to so many times that share may be lost if room is found elsewhere for some of what is lost: of
-// so many vertices. See docs/dev/tuning.md.
+// While looking for room elsewhere, a trial with Aim::Distance may lose up to this many times kWorthLosing, and tries
+// at most this many of the vertices that it displaced. See docs/dev/tuning.md.
 constexpr double kMayFindRoom = 8;
 constexpr std::size_t kMostElsewhere = 4;
 // In a trial, a vertex in the way keeps this share of its displacement in a round, less than in pull_back(), so that
