@@ -11,8 +11,8 @@
 #include <limits>
 #include <numeric>
 
+#include "ground/mesh/exact_predicates.h"
 #include "ground/system/memory.h"
-#include "space/curve/plane_side.h"
 
 namespace vdb_offset {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "space/curve/plane_side.h"
+#include "ground/mesh/exact_predicates.h"
 
 namespace vdb_offset {
 

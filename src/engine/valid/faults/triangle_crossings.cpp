@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled with -frounding-math, which CGAL's interval arithmetic needs.
 #include "valid/faults/triangle_crossings.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
-#include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -14,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "ground/mesh/exact_predicates.h"
 #include "ground/system/assert.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"
@@ -21,11 +18,6 @@
 
 namespace vdb_offset {
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using Triangle = Kernel::Triangle_3;
-using Segment = Kernel::Segment_3;
 
 /// True if the corners of a surface's triangle t that triangle s does not have lie clearly on one side of the plane of
 /// s.
@@ -49,27 +41,19 @@ bool meet(const TestedPair& pair) {
   if (on_one_side(plane_of_a, pair.b, pair.shared) || on_one_side(plane_of_b, pair.a, pair.shared)) return false;
   if (pair.shared == 1 && on_either_side(pair.a, pair.b)) return false;
   if (pair.shared == 0 && (EdgePlanes(pair.a).miss(pair.b) || EdgePlanes(pair.b).miss(pair.a))) return false;
-  std::array<Point, 3> a, b;
-  for (std::size_t k = 0; k < 3; ++k) {
-    a[k] = {pair.a[k][0], pair.a[k][1], pair.a[k][2]};
-    b[k] = {pair.b[k][0], pair.b[k][1], pair.b[k][2]};
-  }
-  const Triangle of_a(a[0], a[1], a[2]), of_b(b[0], b[1], b[2]);
-  if (!plane_of_a.is_clear() && of_a.is_degenerate()) return false;
-  if (!plane_of_b.is_clear() && of_b.is_degenerate()) return false;
-  if (pair.shared == 0) return CGAL::do_intersect(of_a, of_b);
-  if (pair.shared == 1)
-    return CGAL::do_intersect(Segment(a[1], a[2]), of_b) || CGAL::do_intersect(Segment(b[1], b[2]), of_a);
-  return CGAL::coplanar(a[0], a[1], a[2], b[2]) && CGAL::coplanar_orientation(a[0], a[1], a[2], b[2]) == CGAL::POSITIVE;
+  const std::array<Vec3d, 3>&a = pair.a, &b = pair.b;
+  if (!plane_of_a.is_clear() && has_no_area(a)) return false;
+  if (!plane_of_b.is_clear() && has_no_area(b)) return false;
+  if (pair.shared == 0) return triangles_meet(a, b);
+  if (pair.shared == 1) return segment_meets_triangle(a[1], a[2], b) || segment_meets_triangle(b[1], b[2], a);
+  return lie_on_each_other(a, b);
 }
 
 /// Whether a triangle has corners strictly on both sides of another's plane.
 bool has_both_sides(const std::array<Vec3d, 3>& triangle, const std::array<Vec3d, 3>& other) {
-  const auto point = [](const Vec3d& x) { return Point(x[0], x[1], x[2]); };
   int least = 0, most = 0;
   for (const Vec3d& corner : triangle) {
-    const auto side =
-        static_cast<int>(CGAL::orientation(point(other[0]), point(other[1]), point(other[2]), point(corner)));
+    const int side = side_of_plane(other, corner);
     least = std::min(least, side);
     most = std::max(most, side);
   }
