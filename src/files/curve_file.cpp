@@ -15,7 +15,7 @@
 #include "bytes/obj_lines.h"
 #include "bytes/scanner.h"
 #include "document/mesh_readers.h"
-#include "document/rewrite_in_place.h"
+#include "document/rows.h"
 #include "dxf/dxf.h"
 #include "ground/system/memory.h"
 #include "svg/svg.h"
@@ -66,7 +66,7 @@ Words words_of(const std::string& path, std::string_view line) {
 /// Reads plain text, curve by curve.
 class TextParser {
  public:
-  explicit TextParser(CurveFile& curves) : curves_(curves), file_(curves.file) {}
+  TextParser(CurveFile& curves, Rows& rows) : curves_(curves), file_(curves.file), rows_(rows) {}
 
   void run() {
     for (Lines lines(file_.text()); lines.next();) take(lines);
@@ -74,7 +74,7 @@ class TextParser {
     join_airfoil();
     if (file_.polygons.positions.empty())
       Scanner(file_.path, file_.text()).fail("at least one line 'x y'", file_.text().size());
-    file_.position_at = ByteOffsets(std::move(at_));
+    rows_.position_at = ByteOffsets(std::move(at_));
   }
 
  private:
@@ -141,6 +141,7 @@ class TextParser {
 
   CurveFile& curves_;
   MeshFile& file_;
+  Rows& rows_;
   std::vector<NumberTriple> at_;
   MemoryWatch held_{file_.path, sizeof(Vec3d) + sizeof(NumberTriple) + sizeof(std::uint32_t)};
   bool titled_ = false, closed_ = false;
@@ -149,7 +150,8 @@ class TextParser {
 /// Reads `v` lines and `l` elements; all other lines will be copied as they are.
 class LineElementParser {
  public:
-  explicit LineElementParser(MeshFile& file) : file_(file), scanner_(file.path, file.text(), 0, true, kComment) {}
+  LineElementParser(MeshFile& file, Rows& rows)
+      : file_(file), rows_(rows), scanner_(file.path, file.text(), 0, true, kComment) {}
 
   void run() {
     for_each_obj_line(file_.path, file_.text(), [&](const ObjLine& line) {
@@ -160,7 +162,7 @@ class LineElementParser {
     for (const auto& [index, at] : ahead_)
       if (index > file_.polygons.positions.size())
         scanner_.fail(fmt::format("a vertex index up to {}", file_.polygons.positions.size()), at);
-    file_.position_at = ByteOffsets(std::move(at_));
+    rows_.position_at = ByteOffsets(std::move(at_));
   }
 
  private:
@@ -183,6 +185,7 @@ class LineElementParser {
   }
 
   MeshFile& file_;
+  Rows& rows_;
   Scanner scanner_;
   std::vector<NumberTriple> at_;
   std::vector<std::pair<std::uint64_t, std::size_t>>
@@ -195,13 +198,15 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
   curves.file.path = name;
   curves.file.bytes = std::move(bytes);
   if (curves.file.text().empty()) throw InvalidInput(name + ", byte 0: expected curves, got an empty file");
-  if (format != CurveFormat::Svg) use_line_feeds(curves.file);
+  const auto rows = std::make_shared<Rows>(Rows::Syntax{kComment, true});
+  curves.file.document = rows;
+  if (format != CurveFormat::Svg) rows->has_carriage_returns = use_line_feeds(curves.file);
   switch (format) {
     case CurveFormat::Text:
-      TextParser(curves).run();
+      TextParser(curves, *rows).run();
       break;
     case CurveFormat::Obj:
-      LineElementParser(curves.file).run();
+      LineElementParser(curves.file, *rows).run();
       break;
     case CurveFormat::Svg:
       parse_svg(curves, how);

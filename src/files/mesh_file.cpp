@@ -14,9 +14,9 @@
 #include "document/document.h"
 #include "document/documents.h"
 #include "document/encode.h"
+#include "document/format_table.h"
 #include "document/mesh_readers.h"
 #include "document/new_normals.h"
-#include "document/rewrite_in_place.h"
 #include "ground/numbers/rounding.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
@@ -30,74 +30,13 @@ MeshFile parse(std::string name, Format format, FileBytes bytes, const ReadOptio
   file.format = format;
   file.bytes = std::move(bytes);
   if (file.text().empty()) throw InvalidInput(file.path + ", byte 0: expected a mesh, got an empty file");
-  switch (format) {
-    case Format::Obj:
-      parse_obj(file);
-      break;
-    case Format::Off:
-      parse_off(file);
-      break;
-    case Format::Ply:
-      parse_ply(file);
-      break;
-    case Format::Stl:
-      parse_stl(file);
-      break;
-    case Format::ThreeMf:
-      parse_3mf(file);
-      break;
-    case Format::Gltf:
-    case Format::Glb:
-      parse_gltf(file);
-      break;
-    case Format::Vtp:
-    case Format::Vtk:
-    case Format::Vtu:
-      parse_vtk(file);
-      break;
-    case Format::Assimp:
-      parse_by_assimp(file);
-      break;
-    case Format::Step:
-    case Format::Iges:
-    case Format::Brep:
-      parse_cad(file, how.cad);
-      break;
-    case Format::Vdb:
-      parse_vdb(file, how.vdb);
-      break;
-  }
+  row_of(format).parse(file, how);
   return file;
-}
-
-/// A format by the ending of its files; the first of each is its name.
-struct Ending {
-  std::string_view text;
-  Format format;
-};
-constexpr Ending kFormatEndings[] = {
-    {"obj", Format::Obj},     {"off", Format::Off},   {"ply", Format::Ply},    {"stl", Format::Stl},
-    {"3mf", Format::ThreeMf}, {"gltf", Format::Gltf}, {"glb", Format::Glb},    {"vtp", Format::Vtp},
-    {"vtk", Format::Vtk},     {"vtu", Format::Vtu},   {"fbx", Format::Assimp}, {"dae", Format::Assimp},
-    {"3ds", Format::Assimp},  {"step", Format::Step}, {"stp", Format::Step},   {"iges", Format::Iges},
-    {"igs", Format::Iges},    {"brep", Format::Brep}, {"vdb", Format::Vdb}};
-
-/// The source's own document over other positions.
-WrittenDocument rewritten(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
-                          NewNormals normals, const std::string& path) {
-  return source.document->rewrite({source, positions, precision, std::move(normals), path});
 }
 
 }  // namespace
 
-void use_line_feeds(MeshFile& file) {
-  const std::string_view text = file.text();
-  if (text.find('\n') != std::string_view::npos || text.find('\r') == std::string_view::npos) return;
-  std::string lines(text);
-  std::replace(lines.begin(), lines.end(), '\r', '\n');
-  file.bytes.show(std::move(lines));
-  file.has_carriage_returns = true;
-}
+bool has_rows(const MeshFile& file) { return file.document && file.document->rows(); }
 
 Format require_format(const std::string& path, const std::optional<Format>& told) {
   const auto format = told ? told : format_of(path);
@@ -116,23 +55,6 @@ Format require_written_format(const std::string& path, const std::optional<Forma
                        "what such files hold)");
   return format;
 }
-
-std::optional<Format> format_of(std::string_view path) {
-  path = without_compression(path);
-  const std::size_t dot = path.rfind('.');
-  if (dot == std::string_view::npos) return std::nullopt;
-  for (const Ending& ending : kFormatEndings)
-    if (is_word(path.substr(dot + 1), ending.text)) return ending.format;
-  return std::nullopt;
-}
-
-const char* name(Format format) {
-  return std::find_if(std::begin(kFormatEndings), std::end(kFormatEndings),
-                      [&](const Ending& ending) { return ending.format == format; })
-      ->text.data();
-}
-
-bool is_written(Format format) { return format != Format::Assimp && format != Format::Vdb && !is_cad(format); }
 
 bool is_cad(Format format) { return format == Format::Step || format == Format::Iges || format == Format::Brep; }
 
@@ -172,9 +94,9 @@ Target make_target(const std::string& path, const WriteOptions& options, const M
 
 Target target_of(const std::string& path, const MeshFile& source, const WriteOptions& options, Faces faces) {
   // A document whose faces are others becomes a new file.
-  const bool has_rows =
-      require_written_format(path, options.format) == source.format && (faces == Faces::Same || !source.document);
-  return make_target(path, options, has_rows ? &source : nullptr);
+  const bool keeps_rows =
+      require_written_format(path, options.format) == source.format && (faces == Faces::Same || has_rows(source));
+  return make_target(path, options, keeps_rows ? &source : nullptr);
 }
 
 Target target_of(const std::string& path, const WriteOptions& options) { return make_target(path, options, nullptr); }
@@ -185,11 +107,10 @@ WriteResult write_mesh(const Target& target, const MeshFile& source, std::span<c
   WriteResult result;
   WrittenDocument made;
   if (format == source.format) {
-    NewNormals normals;
-    if (how_normals == Normals::Recompute) normals = new_normals(source, positions, precision);
-    result.disagreeing_normals = normals.disagreeing;
-    if (source.document) made = rewritten(source, positions, precision, std::move(normals), path);
-    else made.file = rewrite_in_place(source, positions, precision, std::move(normals));
+    auto normals = std::make_shared<NewNormals>();
+    if (how_normals == Normals::Recompute) *normals = new_normals(source, positions, precision);
+    result.disagreeing_normals = normals->disagreeing;
+    made = source.document->rewrite({source, positions, precision, std::move(normals), path});
     result.lost = first_names(made.lost);
   } else {
     made.file = convert(source, format, positions, precision, how_normals, result);
@@ -205,10 +126,8 @@ WriteResult write_mesh(const Target& target, const MeshFile& source, std::span<c
 }
 
 std::string patched_bytes(const MeshFile& source, std::span<const Vec3d> positions) {
-  NewNormals normals = new_normals(source, positions, source.precision);
-  if (source.document)
-    return join(rewritten(source, positions, source.precision, std::move(normals), source.path).file);
-  return join(rewrite_in_place(source, positions, source.precision, std::move(normals)));
+  const auto normals = std::make_shared<NewNormals>(new_normals(source, positions, source.precision));
+  return join(source.document->rewrite({source, positions, source.precision, normals, source.path}).file);
 }
 
 void write_mesh(const Target& target, PolygonView polygons) {

@@ -9,9 +9,8 @@
 
 #include "derived/refine_writers.h"
 #include "document/convert.h"
-#include "document/rewrite_in_place.h"
+#include "document/rows.h"
 #include "ground/system/memory.h"
-#include "ply/ply_header.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
@@ -71,26 +70,12 @@ bool splits_nothing(const Polygons& source, const Refinement& refinement) {
          refinement.polygons.corners == source.corners;
 }
 
-Pieces in_own_format(const SharedRefined& content, std::vector<std::string>& lost) {
-  switch (content->source.format) {
-    case Format::Obj:
-      return refined_obj(content, lost);
-    case Format::Off:
-      return refined_off(content);
-    case Format::Ply:
-      return refined_ply(content);
-    default:
-      break;
-  }
-  return refined_stl(content);
-}
-
 MeshFile parse_refined(const MeshFile& source, const Refinement& refinement, std::vector<std::string>& lost) {
   const auto content = std::make_shared<const RefinedContent>(RefinedContent{source, refinement});
   // A face takes about as many bytes as before, and a text grows by doubling.
   const std::size_t of_face = source.text().size() / source.polygons.face_count() + 1;
   require_memory(2 * of_face * refinement.polygons.face_count(), source.path);
-  std::string bytes = join(with_line_ends_of(source, in_own_format(content, lost)));
+  std::string bytes = join(with_line_ends_of(source, rows_of(source).refined(content, lost)));
   source.bytes.require_unchanged(source.path);
   return parse_mesh(source.path, source.format, std::move(bytes));
 }
@@ -115,12 +100,12 @@ void require_same(const RefinedFile& refined, const Refinement& refinement) {
 RefinedFile refine_file(const MeshFile& source, const Refinement& refinement) {
   require_fit(source.polygons, refinement);
   RefinedFile refined;
-  if (source.format == Format::Stl) refined.vertex = refinement.polygons.corners;
+  if (has_rows(source) && !rows_of(source).shares_vertices()) refined.vertex = refinement.polygons.corners;
   if (splits_nothing(source.polygons, refinement)) {
     refined.file = source;
     return refined;
   }
-  if (source.document) {
+  if (!has_rows(source)) {
     // Such a file cannot be given more vertices as it is: what OBJ has a place for comes along.
     WriteResult as_obj;
     std::string bytes = join(convert(source, Format::Obj, source.polygons.positions, {}, Normals::Keep, as_obj));
@@ -128,9 +113,9 @@ RefinedFile refine_file(const MeshFile& source, const Refinement& refinement) {
     refined.file = parse_refined(parse_mesh(source.path, Format::Obj, std::move(bytes)), refinement, refined.lost);
     refined.file.unit_micrometres = source.unit_micrometres;
     source.bytes.require_unchanged(source.path);
-  } else if (source.format == Format::Ply && ply::find_strips(ply::read_header(source))) {
-    std::string bytes = ply_without_strips(source, refined.lost);
-    refined.file = parse_refined(parse_mesh(source.path, Format::Ply, std::move(bytes)), refinement, refined.lost);
+  } else if (!rows_of(source).has_face_rows()) {
+    std::string bytes = rows_of(source).with_face_rows(source, refined.lost);
+    refined.file = parse_refined(parse_mesh(source.path, source.format, std::move(bytes)), refinement, refined.lost);
     source.bytes.require_unchanged(source.path);
   } else {
     refined.file = parse_refined(source, refinement, refined.lost);

@@ -12,8 +12,7 @@
 #include "derived/convert_shell.h"
 #include "derived/shell_writers.h"
 #include "document/mesh_readers.h"
-#include "document/rewrite_in_place.h"
-#include "ply/ply_header.h"
+#include "document/rows.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
@@ -29,24 +28,6 @@ void require_same_mesh(const MeshFile& source, const Shell& shell) {
     return;
   throw InvalidInput(fmt::format("write_shell: expected a shell of {} vertices and {} faces, got one of {} and {}",
                                  source.polygons.positions.size(), faces, shell.source_vertices(), shell.skin_faces()));
-}
-
-bool has_strips(const MeshFile& source) {
-  return source.format == Format::Ply && ply::find_strips(ply::read_header(source));
-}
-
-Pieces in_own_format(const SharedShell& content, std::vector<std::string>& lost) {
-  switch (content->source.format) {
-    case Format::Obj:
-      return shell_to_obj(content, lost);
-    case Format::Off:
-      return shell_to_off(content, lost);
-    case Format::Ply:
-      return shell_to_ply(content, lost);
-    default:
-      break;
-  }
-  return shell_to_stl(content, lost);
 }
 
 /// A number with the other sign. A word that is no number is not changed.
@@ -65,8 +46,8 @@ Skin::Skin(const MeshFile& source, const Shell& shell, ShellPart part, const Rou
       positions_(part == ShellPart::Inner ? shell.inner() : shell.outer()),
       first_vertex_(part == ShellPart::Inner ? static_cast<std::uint32_t>(positions_.size()) : 0),
       precision_(precision) {
-  if (normals != Normals::Recompute || source.normal_at.empty()) return;
-  const bool of_vertices = source.format == Format::Ply || source.format == Format::Off;
+  if (normals != Normals::Recompute || source.normal_count == 0) return;
+  const bool of_vertices = source.document->normals_of() == NormalsOf::Vertices;
   if (of_vertices && !shell.splits.empty()) vertex_normals_ = shell_vertex_normals(shell, precision);
   else normals_ = skin_normals(source, shell, part, precision);
 }
@@ -105,7 +86,7 @@ void Skin::append_normal_component(std::string& text, std::size_t n, int k, std:
 void Skin::append_position(std::string& text, std::size_t v) const {
   for (int k = 0; k < 3; ++k) {
     text += ' ';
-    append_coordinate(text, v, k, word_at(source_.position_at[source_of(v)].at[k]));
+    append_coordinate(text, v, k, word_at(rows_of(source_).position_at[source_of(v)].at[k]));
   }
 }
 
@@ -113,13 +94,13 @@ void Skin::append_normal(std::string& text, std::size_t n) const {
   const std::size_t at = vertex_normals_.empty() ? n : source_of(n);
   for (int k = 0; k < 3; ++k) {
     text += ' ';
-    append_normal_component(text, n, k, word_at(source_.normal_at[at].at[k]));
+    append_normal_component(text, n, k, word_at(rows_of(source_).normal_at[at].at[k]));
   }
 }
 
 std::string_view Skin::word_at(std::uint64_t byte) const {
-  const char comment = source_.format == Format::Obj || source_.format == Format::Off ? '#' : '\0';
-  return Scanner(source_.path, source_.text(), byte, source_.format == Format::Obj, comment).token();
+  const Rows::Syntax& syntax = rows_of(source_).syntax();
+  return Scanner(source_.path, source_.text(), byte, syntax.joins_lines, syntax.comment).token();
 }
 
 NewNormals skin_normals(const MeshFile& source, const Shell& shell, ShellPart part, const Rounding& precision) {
@@ -158,10 +139,10 @@ WriteResult write_shell(const Target& target, const MeshFile& source, const Shel
   WriteResult result;
   Pieces pieces;
   // The source's rows are kept unless they are strips, which cannot be reversed face by face.
-  if (target.format == source.format && !source.document && !has_strips(source)) {
+  if (target.format == source.format && has_rows(source) && rows_of(source).has_face_rows()) {
     const auto content = std::make_shared<ShellContent>(ShellContent{source, shell, target.precision, target.normals});
     std::vector<std::string> lost;
-    pieces = with_line_ends_of(source, in_own_format(content, lost));
+    pieces = with_line_ends_of(source, rows_of(source).with_shell(content, lost));
     result.disagreeing_normals = content->outer.new_normals().disagreeing + content->inner.new_normals().disagreeing;
     result.lost = first_names(lost);
   } else {

@@ -13,9 +13,9 @@
 #include "bytes/line_records.h"
 #include "bytes/nearest_names.h"
 #include "bytes/scanner.h"
+#include "document/binary_number.h"
 #include "document/document.h"
 #include "ground/system/parallel.h"
-#include "ply/ply_header.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
@@ -53,7 +53,7 @@ std::vector<double> parse_text(const std::string& path, std::string_view text, s
 
 /// The header of a NumPy array (numpy.lib.format).
 struct NpyHeader {
-  ply::Type type{'f', 8};
+  NumberType type{'f', 8};
   Encoding encoding = Encoding::LittleEndian;
   std::uint64_t count = 0;
   std::size_t end = 0;  // first byte of the numbers
@@ -97,7 +97,7 @@ class NpyHeaderReader {
     at_ = kLengthAt + bytes;
     if (text_.size() < at_) fail("the length of the header", text_.size());
     const double length =
-        ply::binary_number(text_.data() + kLengthAt, {'u', static_cast<std::uint8_t>(bytes)}, Encoding::LittleEndian);
+        binary_number(text_.data() + kLengthAt, {'u', static_cast<std::uint8_t>(bytes)}, Encoding::LittleEndian);
     header_.end = at_ + static_cast<std::size_t>(length);
     if (header_.end > text_.size()) fail_with(fmt::format("a header of {} bytes", length), "the end of the file", at_);
     text_ = text_.substr(0, header_.end);
@@ -204,56 +204,13 @@ std::vector<double> parse_npy(const std::string& path, std::string_view bytes, s
   std::atomic<std::uint64_t> first_unusable = count;
   const auto offset_of = [&](std::size_t v) { return header.end + v * size; };
   for_each_index(count, [&](std::size_t v) {
-    numbers[v] = ply::binary_number(bytes.data() + offset_of(v), header.type, header.encoding);
+    numbers[v] = binary_number(bytes.data() + offset_of(v), header.type, header.encoding);
     if (!std::isfinite(numbers[v])) lower_to(first_unusable, v);
   });
   if (const std::size_t v = first_unusable; v < count)
     throw InvalidInput(fmt::format("{}, byte {}: expected {}, got {}", path, offset_of(v),
                                    number_of_vertex("a finite number", v), numbers[v]));
   return numbers;
-}
-
-/// The property with this name. \throw InvalidInput if there is none, or it is a list
-const ply::Property& find_scalar(const MeshFile& source, const ply::Element& vertices, const std::string& name) {
-  std::vector<std::string> known;
-  const ply::Property* found = nullptr;
-  for (const ply::Property& property : vertices.properties) {
-    if (property.count) continue;
-    if (property.name == name) {
-      if (found)
-        throw InvalidInput(fmt::format("{}: expected one vertex property '{}', found several", source.path, name));
-      found = &property;
-    }
-    known.push_back(property.name);
-  }
-  if (!found)
-    throw InvalidInput(fmt::format("{}: expected a vertex property '{}' of single numbers, found none (there are {})",
-                                   source.path, name, nearest_names(name, known)));
-  return *found;
-}
-
-/// The number of a property at a byte. \throw InvalidInput unless it is a finite number of the property's type, in a
-/// text as well
-double property_at(const MeshFile& source, const ply::Property& property, std::uint64_t at, std::size_t v) {
-  const auto expected = [&] { return number_of_vertex(fmt::format("a finite number '{}'", property.name), v); };
-  if (source.encoding != Encoding::Ascii) {
-    const double value = ply::binary_number(source.text().data() + at, property.type, source.encoding);
-    if (!std::isfinite(value))
-      throw InvalidInput(fmt::format("{}, byte {}: expected {}, got {}", source.path, at, expected(), value));
-    return value;
-  }
-  Scanner scanner(source.path, source.text(), at);
-  double value = 0;
-  std::int64_t whole = 0;
-  if (property.type.kind == 'f') {
-    if (!parse_double(scanner.token(), value)) scanner.fail(expected(), at);
-    value = ply::as_declared(property.type, value);
-  } else {
-    if (!parse_integer(scanner.token(), whole)) scanner.fail(expected(), at);
-    value = static_cast<double>(whole);
-  }
-  if (!std::isfinite(value)) scanner.fail(expected(), at);
-  return value;
 }
 
 }  // namespace
@@ -273,27 +230,7 @@ std::vector<double> read_vertex_numbers(const std::string& path, std::size_t cou
 }
 
 std::vector<double> vertex_property(const MeshFile& source, const std::string& name) {
-  if (source.document) return source.document->vertex_numbers(source, name);
-  if (source.format != Format::Ply)
-    throw InvalidInput(fmt::format("{}: expected a PLY file, whose vertices can have a property '{}', found {}",
-                                   source.path, name, io::name(source.format)));
-  const ply::Header header = ply::read_header(source);
-  const ply::Element* const vertices = ply::find(header, "vertex");
-  const std::size_t count = source.polygons.positions.size();
-  // This fails only if the file has changed since it was read.
-  if (!vertices || vertices->count != count)
-    throw InvalidInput(fmt::format("{}, header: expected {} vertices, as before", source.path, count));
-  const ply::Property& wanted = find_scalar(source, *vertices, name);
-  ply::BodyReader body(source, header);
-  body.skip_to(*vertices, header);
-  std::vector<double> numbers(count);
-  for (std::size_t v = 0; v < count; ++v)
-    for (const ply::Property& property : vertices->properties)
-      if (&property == &wanted)
-        numbers[v] = property_at(source, wanted, body.skip_number(wanted.type, "a property"), v);
-      else body.skip(property);
-  source.bytes.require_unchanged(source.path);
-  return numbers;
+  return source.document->vertex_numbers(source, name);
 }
 
 }  // namespace vdb_offset::io

@@ -130,7 +130,7 @@ TEST_CASE("gltf: a file of Blender keeps every byte but those of positions, norm
   const io::MeshFile file = glb_file(glb);
   CHECK(file.polygons.positions.size() == 24);
   CHECK(file.polygons.face_count() == 12);
-  CHECK(file.vertex_normals == 24);
+  CHECK(file.normal_count == 24);
   CHECK(file.unit_micrometres == 1e6);
   CHECK(io::wall_names(file).names == std::vector<std::string>{"Cube"});
   CHECK(io::read_materials(file).names == std::vector<std::string>{"Material"});

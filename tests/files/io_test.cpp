@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "document/rows.h"
 #include "ground/numbers/rounding.h"
 #include "support/bytes.h"
 #include "support/edits.h"
@@ -74,7 +75,7 @@ TEST_CASE("obj: faces, negative indices and continued lines are read", "[io]") {
   const io::MeshFile file = io::read_mesh(folder.write("a.obj", kObj));
   CHECK(file.polygons.positions.size() == 4);
   CHECK(file.polygons.corners == std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2});
-  CHECK(file.corner_normal == std::vector<std::uint32_t>(6, 0));
+  CHECK(io::rows_of(file).corner_normal == std::vector<std::uint32_t>(6, 0));
 }
 
 TEST_CASE("obj: normals of faces that turned are computed anew", "[io]") {
@@ -314,7 +315,7 @@ TEST_CASE("obj: lines out of the ordinary are read as plain ones are, in files o
   CHECK(a.polygons.positions == b.polygons.positions);
   CHECK(a.polygons.corners == b.polygons.corners);
   CHECK(a.polygons.face_begin == b.polygons.face_begin);
-  CHECK(b.corner_normal == std::vector<std::uint32_t>(b.polygons.corners.size(), 0));
+  CHECK(io::rows_of(b).corner_normal == std::vector<std::uint32_t>(b.polygons.corners.size(), 0));
   CHECK(moved(folder, "odd.obj", odd, {0, 0, 0}) == odd);
   CHECK(io::parse_mesh("x", io::Format::Obj, moved(folder, "odd.obj", odd, {1, 2, 3})).polygons.positions ==
         shifted(a.polygons.positions, {1, 2, 3}));

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "bytes/nearest_names.h"
+#include "document/rows.h"
 #include "ground/numbers/rounding.h"
 #include "space/surface/surface.h"
 #include "support/bytes.h"
@@ -243,7 +244,7 @@ TEST_CASE("io: texts whose lines end in carriage returns are read and kept", "[i
     CHECK(moved(file, {0.5, 0, 0}) == replaced_everywhere(moved(other, {0.5, 0, 0}), "\n", "\r"));
     std::string lost;
     const io::MeshFile shell = shell_there_and_back(folder, file, lost);
-    CHECK(shell.has_carriage_returns);
+    CHECK(io::rows_of(shell).has_carriage_returns);
   }
   const std::vector<std::uint8_t> chosen = io::select_faces(
       io::read_mesh(folder.file("a.obj")), std::vector<io::Selector>{io::parse_selector("group=part")});
@@ -316,7 +317,7 @@ TEST_CASE("obj: corners that name what there is none of are read, and told", "[i
   CHECK_THAT(normals.remarks[0], Catch::Contains("no 'vn' line"));
   const io::MeshFile both = parse(Format::Obj, kTriangle + "f 1/1/1 2/1/1 3/1/1\n");
   CHECK(both.remarks.size() == 2);
-  CHECK(both.corner_normal.empty());
+  CHECK(io::rows_of(both).corner_normal.empty());
   const std::string moved_text = moved(both, {0, 0, 1});
   CHECK_THAT(moved_text, Catch::EndsWith("f 1/1/1 2/1/1 3/1/1\n"));
   CHECK_THAT(parse(Format::Obj, kTriangle + "f 1/1 2/1 3/1\n").remarks.at(0), Catch::Contains("no 'vt' line"));

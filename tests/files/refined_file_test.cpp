@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_offset/io/refined_file.h"
+#include "document/rows.h"
 
 #include <fmt/format.h>
 
@@ -103,7 +104,7 @@ TEST_CASE("refined OBJ: line ends, continued lines and numbers behind coordinate
   const io::MeshFile old_mac =
       parse(Format::Obj, replaced_everywhere(replaced_everywhere(coloured, "\\\n", ""), "\n", "\r"));
   const io::RefinedFile refined = io::refine_file(old_mac, Splitter(old_mac).edge(0, 1).run());
-  CHECK(refined.file.has_carriage_returns);
+  CHECK(io::rows_of(refined.file).has_carriage_returns);
   CHECK(io::patched_bytes(refined.file, refined.file.polygons.positions) == replaced_everywhere(expected, "\n", "\r"));
 }
 

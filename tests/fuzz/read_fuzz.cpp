@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "document/rows.h"
 #include "fuzz/promise.h"
 #include "ground/numbers/rounding.h"
 #include "ply/ply_header.h"
@@ -58,21 +59,24 @@ void check_mesh(const io::MeshFile& file) {
   for (const Vec3d& p : mesh.positions)
     for (int k = 0; k < 3; ++k) require(std::isfinite(p[k]), "coordinates are finite");
 
-  require(file.document || file.position_at.size() == mesh.positions.size(),
+  require(!io::has_rows(file) || io::rows_of(file).position_at.size() == mesh.positions.size(),
           "every vertex has its byte offset in the file");
-  require(!file.document || file.vertex_normals == 0 || file.vertex_normals == mesh.positions.size(),
+  require(io::has_rows(file) || file.normal_count == 0 || file.normal_count == mesh.positions.size(),
           "a document has a normal for each vertex, or none");
-  require(file.corner_normal.empty() || file.corner_normal.size() == mesh.corners.size(), "one normal a corner");
-  for (const auto n : file.corner_normal)
-    require(n == io::kNoNormal || n < file.normal_at.size(), "corner_normal holds indices of normals");
+  if (!io::has_rows(file)) return;
+  const std::vector<std::uint32_t>& normal = io::rows_of(file).corner_normal;
+  require(normal.empty() || normal.size() == mesh.corners.size(), "one normal a corner");
+  for (const auto n : normal)
+    require(n == io::kNoNormal || n < file.normal_count, "corner_normal holds indices of normals");
 }
 
 void require_same_topology(const io::MeshFile& a, const io::MeshFile& b) {
   require(a.polygons.positions.size() == b.polygons.positions.size(), "the number of vertices stays");
   require(a.polygons.corners == b.polygons.corners, "corners stay");
   require(a.polygons.face_begin == b.polygons.face_begin, "faces stay");
-  require(a.corner_normal == b.corner_normal, "the corners' normals stay");
-  require(a.normal_count() == b.normal_count(), "the number of normals stays");
+  require(!io::has_rows(a) || io::rows_of(a).corner_normal == io::rows_of(b).corner_normal,
+          "the corners' normals stay");
+  require(a.normal_count == b.normal_count, "the number of normals stays");
   require(a.encoding == b.encoding, "the encoding stays");
   require(a.extras == b.extras, "what else the file holds stays");
 }
@@ -126,8 +130,8 @@ void check_refined(const io::MeshFile& file) {
   const Refinement refinement = Splitter(file).edge(face[0], face[1]).edge(face[1], face[2]).inside(longest).run();
   const io::RefinedFile refined = io::refine_file(file, refinement);
   check_mesh(refined.file);
-  require(file.document || refined.file.encoding == file.encoding, "the encoding stays");
-  require(refined.file.has_carriage_returns ||
+  require(!io::has_rows(file) || refined.file.encoding == file.encoding, "the encoding stays");
+  require(io::rows_of(refined.file).has_carriage_returns ||
               io::patched_bytes(refined.file, refined.file.polygons.positions) == refined.file.text(),
           "a refined mesh that is not moved keeps every byte");
   io::read_attributes(refined.file);

@@ -187,9 +187,9 @@ Precision precision_of_refined(const Job& job) {
   if (!job.source.file) return path.empty() ? Precision{} : io::target_of(path, all_digits).precision;
   const io::MeshFile& file = *job.source.file;
   // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
-  const bool is_double = file.document || file.precision.kind == Precision::Kind::Double;
+  const bool is_double = !io::has_rows(file) || file.precision.kind == Precision::Kind::Double;
   if (is_double && !path.empty()) return io::target_of(path, file, all_digits, io::Faces::Others).precision;
-  return file.document ? Precision{} : file.precision;
+  return io::has_rows(file) ? file.precision : Precision{};
 }
 
 Job resolve(const Request& request, const Source& source) {

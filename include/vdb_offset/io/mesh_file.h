@@ -50,35 +50,26 @@ struct VDB_OFFSET_API MeshFile {
   FileBytes bytes;  ///< The whole file, decompressed.
   Polygons polygons;
 
-  /// First byte of each coordinate of each vertex, in the order of `polygons.positions`.
-  ByteOffsets position_at;
-  /// First byte of each number of each of the file's normals, in their own order. OBJ: `vn` lines; OFF, PLY: one a
-  /// vertex; STL: one a facet.
-  ByteOffsets normal_at;
-  /// OBJ: the normal that each face corner names, kNoNormal where it names none. Empty if no corner does.
-  std::vector<std::uint32_t> corner_normal;
-  std::vector<std::string> extras;   ///< What the file holds besides positions and faces, in words.
-  std::vector<std::string> remarks;  ///< What is wrong with the file and yet no reason to refuse it, in words.
-  std::uint8_t position_bytes = 0, normal_bytes = 0;  ///< Size of a binary number: 4 or 8; 0 for text.
-  Precision precision;                                ///< What its coordinates can hold.
-  /// Lines end with a carriage return alone. `bytes` has a line feed in the place of each.
-  bool has_carriage_returns = false;
-  /// Of a format that holds more than a mesh: the rest of the file; `position_at` and `normal_at` are empty then.
-  std::shared_ptr<const Document> document;
-  std::size_t vertex_normals = 0;          ///< With a document: its normals; one for each vertex, or none.
-  std::optional<double> unit_micrometres;  ///< The length of the unit of its coordinates, if the file tells it.
-  std::vector<std::string> files_beside;   ///< Files that were read besides, as a .gltf names them.
-  std::vector<std::string> files_named;    ///< Files that it names and that were not read, as images and materials.
+  std::vector<std::string> extras;           ///< What the file holds besides positions and faces, in words.
+  std::vector<std::string> remarks;          ///< What is wrong with the file and yet no reason to refuse it, in words.
+  Precision precision;                       ///< What its coordinates can hold.
+  std::shared_ptr<const Document> document;  ///< What its format's reader keeps of it.
+  std::size_t normal_count = 0;              ///< Its normals: of vertices, corners or facets.
+  std::optional<double> unit_micrometres;    ///< The length of the unit of its coordinates, if the file tells it.
+  std::vector<std::string> files_beside;     ///< Files that were read besides, as a .gltf names them.
+  std::vector<std::string> files_named;      ///< Files that it names and that were not read, as images and materials.
   /// Of a CAD model: its surface, which the polygons are a tessellation of.
   std::shared_ptr<const ExactSurface> exact;
   double voxel_size = 0;  ///< Of the grid that the mesh is a surface of, along its first axis; 0 of other files.
   /// Vertices at equal positions are of objects that touch, and no two of one object are: not to be welded.
   bool has_touching_objects = false;
 
-  std::size_t normal_count() const { return document ? vertex_normals : normal_at.size(); }
   std::string_view text() const { return bytes.view(); }
 };
 inline constexpr std::uint32_t kNoNormal = 0xffffffff;
+
+/// Whether a file is a mesh alone, row by row (OBJ, OFF, PLY, STL): it can be given more vertices and faces as it is.
+VDB_OFFSET_API bool has_rows(const MeshFile& file);
 
 /// How a CAD model becomes a mesh.
 struct CadReading {

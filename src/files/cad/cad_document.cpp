@@ -27,7 +27,7 @@ std::string colour_digits(const std::array<double, 3>& colour) {
 }
 
 /// A name without blanks, as the names of groups are words.
-std::string as_word(std::string name) {
+std::string one_word(std::string name) {
   for (char& c : name)
     if (std::isspace(static_cast<unsigned char>(c))) c = '_';
   return name;
@@ -36,7 +36,7 @@ std::string as_word(std::string name) {
 std::string group_of(const CadFaceFacts& face, std::size_t number) {
   std::string group = fmt::format("face_{}", number);
   for (const std::string* name : {&face.instance, &face.name})
-    if (!name->empty()) group += "_" + as_word(*name);
+    if (!name->empty()) group += "_" + one_word(*name);
   return group;
 }
 
@@ -75,7 +75,7 @@ class CadDocument : public Document {
     for (std::size_t f = 0; f < mesh_->faces.size(); ++f) {
       const CadFaceFacts& face = mesh_->faces[f];
       names.groups.push_back(group_of(face, f + 1));
-      names.layers.push_back(as_word(face.layer));
+      names.layers.push_back(one_word(face.layer));
       const std::string material = face.colour ? "rgb_" + colour_digits(*face.colour) : "";
       const auto [entry, is_new] = known.try_emplace(material, static_cast<std::uint32_t>(names.materials.size()));
       if (is_new) names.materials.push_back(material), names.colours.push_back(face.colour);
@@ -88,7 +88,7 @@ class CadDocument : public Document {
     return names;
   }
 
-  std::vector<std::uint8_t> select(const MeshFile& source, const Selector& selector) const override {
+  std::optional<std::vector<std::uint8_t>> select(const MeshFile& source, const Selector& selector) const override {
     std::vector<std::uint8_t> of_face(mesh_->faces.size(), 0);
     std::vector<std::string> known;
     for (std::size_t f = 0; f < of_face.size(); ++f)

@@ -35,13 +35,4 @@ auto at_origin(const VertexOrigin& origin, At&& at) {
   return std::array<Value, 3>{at(origin.vertex[0]), at(origin.vertex[1]), at(origin.vertex[2])};
 }
 
-// The writers of all formats. They add to `lost` what they cannot keep.
-Pieces refined_obj(const SharedRefined& content, std::vector<std::string>& lost);
-Pieces refined_off(const SharedRefined& content);
-Pieces refined_ply(const SharedRefined& content);
-Pieces refined_stl(const SharedRefined& content);
-
-/// A PLY file with faces in the place of strips of triangles. `lost` gets what they had besides.
-std::string ply_without_strips(const MeshFile& source, std::vector<std::string>& lost);
-
 }  // namespace vdb_offset::io

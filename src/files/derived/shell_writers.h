@@ -90,11 +90,4 @@ struct ShellContent {
 };
 using SharedShell = std::shared_ptr<const ShellContent>;
 
-// The writers of all formats. They add to `lost` what they cannot keep. \throw InvalidInput if the source's file has
-// changed.
-Pieces shell_to_obj(const SharedShell& content, std::vector<std::string>& lost);
-Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost);
-Pieces shell_to_ply(const SharedShell& content, std::vector<std::string>& lost);
-Pieces shell_to_stl(const SharedShell& content, std::vector<std::string>& lost);
-
 }  // namespace vdb_offset::io

@@ -144,7 +144,7 @@ Pieces convert(const MeshFile& source, Format target, std::span<const Vec3d> pos
     content->mesh.triangles = content->triangles;
   }
   Attributes& with = content->with;
-  if (target == Format::ThreeMf || is_gltf(target) || (source.document && target == Format::Obj))
+  if (target == Format::ThreeMf || is_gltf(target) || (!has_rows(source) && target == Format::Obj))
     if (Materials materials = read_materials(source); !materials.of_face.empty()) {
       content->materials = std::move(materials);
       // Their names alone; and in 3MF not these either where vertices have colours: a triangle has either.

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
@@ -17,10 +19,30 @@ void Document::read_attributes(const MeshFile&, Attributes&) const {}
 
 FaceNames Document::face_names() const { return {}; }
 
-std::vector<std::uint8_t> Document::select(const MeshFile& source, const Selector& selector) const {
-  throw InvalidOption(
-      fmt::format("{}: expected a CAD model to choose '{}' of, got another file", source.path, selector.name));
+Materials Document::read_materials(const MeshFile&) const {
+  FaceNames names = face_names();
+  return {std::move(names.materials), std::move(names.material_of), {}, std::move(names.colours)};
 }
+
+void Document::visit_labels(const MeshFile& source, LabelListener& listener) const {
+  const FaceNames names = face_names();
+  const auto changes = [](const std::vector<std::uint32_t>& of_face, std::size_t f) {
+    return !of_face.empty() && (f == 0 || of_face[f] != of_face[f - 1]);
+  };
+  for (std::size_t f = 0; f < source.polygons.face_count(); ++f) {
+    if (changes(names.group_of, f)) {
+      const std::uint32_t number = names.group_of[f];
+      std::vector<std::string> groups;
+      if (!names.groups[number].empty()) groups.push_back(names.groups[number]);
+      if (!names.layers.empty() && !names.layers[number].empty()) groups.push_back(names.layers[number]);
+      listener.set_groups(std::move(groups));
+    }
+    if (changes(names.material_of, f)) listener.set_material(names.materials[names.material_of[f]]);
+    listener.add_face();
+  }
+}
+
+std::optional<std::vector<std::uint8_t>> Document::select(const MeshFile&, const Selector&) const { return {}; }
 
 std::vector<double> Document::vertex_numbers(const MeshFile& source, const std::string& name) const {
   throw InvalidInput(

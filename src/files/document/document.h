@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +31,8 @@ struct MovedMesh {
   const MeshFile& source;  ///< Outlives the pieces that are made of it, as the positions do.
   std::span<const Vec3d> positions;
   Rounding precision;
-  NewNormals normals;  ///< One for each of source.vertex_normals; or none.
-  std::string path;    ///< Where it will be written.
+  std::shared_ptr<const NewNormals> normals;  ///< One for each normal of the source; or none.
+  std::string path;                           ///< Where it will be written.
 
   bool has_moved(std::size_t v) const { return io::has_moved(source.polygons.positions[v], positions[v], precision); }
   bool any_has_moved() const;
@@ -47,7 +48,22 @@ struct WrittenDocument {
   std::vector<std::string> lost;  ///< What of the source it does not hold, in words.
 };
 
-/// What the reader of a format keeps of a file whose meshes are one part among others.
+/// Receives the names of a file's faces, in its order. What is set holds for the faces after it.
+class LabelListener {
+ public:
+  virtual ~LabelListener() = default;
+  virtual void set_groups(std::vector<std::string> names) = 0;
+  virtual void set_object(std::string name) = 0;
+  virtual void set_material(std::string name) = 0;
+  virtual void add_face() = 0;
+};
+
+/// What a file has a normal for.
+enum class NormalsOf : std::uint8_t { Vertices, Corners, Facets };
+
+class Rows;
+
+/// What the reader of a format keeps of a file, to write it again and to tell what it holds besides a mesh.
 class Document {
  public:
   Document() = default;
@@ -63,10 +79,17 @@ class Document {
   virtual void read_attributes(const MeshFile& source, Attributes& attributes) const;
 
   virtual FaceNames face_names() const;
+  virtual Materials read_materials(const MeshFile& source) const;
+  /// Calls the listener for the names of all faces; not at all if the file has none.
+  virtual void visit_labels(const MeshFile& source, LabelListener& listener) const;
 
-  /// One number a face: 1 if the selector names it, which is not by a group, a material or a file.
-  /// \throw InvalidOption if there is no such face, or the format has no such names
-  virtual std::vector<std::uint8_t> select(const MeshFile& source, const Selector& selector) const;
+  virtual NormalsOf normals_of() const { return NormalsOf::Vertices; }
+  /// This, if it is written by rows (document/rows.h).
+  virtual const Rows* rows() const { return nullptr; }
+
+  /// One number a face: 1 if the selector names it, which is not by a group, a material or a file. None if the format
+  /// has no such names. \throw InvalidOption if there is no such face
+  virtual std::optional<std::vector<std::uint8_t>> select(const MeshFile& source, const Selector& selector) const;
 
   /// The numbers that it holds for its vertices under a name.
   /// \throw InvalidInput if it has none of that name, or not one finite number for each

@@ -10,9 +10,13 @@
 
 namespace vdb_offset::io {
 
-// The readers of formats whose files hold more than a mesh. Each takes a file with `path`, `format` and `bytes` set,
-// and fills in `polygons`, `precision`, `extras`, `remarks`, `vertex_normals`, `unit_micrometres` and `document`.
+// The readers of all formats. Each takes a file with `path`, `format` and `bytes` set, and fills in `polygons`,
+// `precision`, `extras`, `remarks`, `normal_count`, `unit_micrometres` and `document`.
 // \throw InvalidInput for content that is no such mesh.
+void parse_obj(MeshFile& file);
+void parse_off(MeshFile& file);
+void parse_ply(MeshFile& file);
+void parse_stl(MeshFile& file);
 void parse_gltf(MeshFile& file);  ///< .gltf and .glb
 void parse_3mf(MeshFile& file);
 void parse_vtk(MeshFile& file);  ///< .vtp, .vtk and .vtu
@@ -26,6 +30,10 @@ inline constexpr double kMetre = 1e6;  // micrometres
 std::optional<double> unit_of_3mf(const std::string& path);
 
 // New files of a content, which encode() calls; `with` has been fitted to the format (see fit_to_format()).
+Pieces to_obj(const SharedContent& content);
+Pieces to_off(const SharedContent& content);
+Pieces to_ply(const SharedContent& content);
+Pieces to_stl(const SharedContent& content);
 Pieces to_glb(const SharedContent& content);
 Pieces to_gltf(const SharedContent& content);
 Pieces to_3mf(const SharedContent& content);

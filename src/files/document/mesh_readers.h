@@ -5,17 +5,6 @@
 
 namespace vdb_offset::io {
 
-// The readers of all formats. Each takes a file with `path` and `bytes` set, and fills in the rest.
-// \throw InvalidInput for content that is no such mesh.
-void parse_obj(MeshFile& file);
-void parse_off(MeshFile& file);
-void parse_ply(MeshFile& file);
-void parse_stl(MeshFile& file);
-
-/// Replaces carriage returns of a text by line feeds, if its lines end with these alone, as those of old Macs
-/// do; see MeshFile.
-void use_line_feeds(MeshFile& file);
-
 /// The format that was given, or else that of the file's ending. \throw InvalidInput for an ending that is unknown.
 Format require_format(const std::string& path, const std::optional<Format>& told);
 /// As require_format(), for a file that is to be written. \throw InvalidInput for a format that is read only as well.

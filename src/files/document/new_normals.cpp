@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "document/rows.h"
 #include "ground/numbers/rounding.h"
 #include "ground/system/parallel.h"
 #include "vdb_offset/io/attributes.h"
@@ -50,11 +51,13 @@ std::array<std::uint64_t, 6> bits_of(const Vec3d& position, const Vec3d& normal)
 class CornerNormals {
  public:
   explicit CornerNormals(const MeshFile& source) : source_(source) {
-    if (source.document) join_split_vertices();
+    if (const Rows* const rows = source.document->rows()) corner_normal_ = rows->corner_normal;
+    else join_split_vertices();
   }
 
   std::uint32_t operator()(std::size_t corner) const {
-    if (source_.format == Format::Obj) return source_.corner_normal.empty() ? kNoNormal : source_.corner_normal[corner];
+    if (source_.document->normals_of() == NormalsOf::Corners)
+      return corner_normal_.empty() ? kNoNormal : corner_normal_[corner];
     return of_vertex(source_.polygons.corners[corner]);
   }
   /// The normal that a vertex shares, in formats that have one for each.
@@ -80,6 +83,7 @@ class CornerNormals {
   }
 
   const MeshFile& source_;
+  std::span<const std::uint32_t> corner_normal_;
   std::vector<std::uint32_t> shared_;
 };
 
@@ -98,7 +102,7 @@ void for_each_user(const MeshFile& source, const CornerNormals& normal_of, std::
 
 Users find_users(const MeshFile& source, const CornerNormals& normal_of, std::span<const std::uint32_t> faces) {
   Users users;
-  users.begin.assign(source.normal_count() + 2, 0);
+  users.begin.assign(source.normal_count + 2, 0);
   for_each_user(source, normal_of, faces, [&](auto, auto, std::uint32_t n) { ++users.begin[n + 2]; });
   std::partial_sum(users.begin.begin(), users.begin.end(), users.begin.begin());
   users.corners.resize(users.begin.back());
@@ -162,12 +166,13 @@ NewNormals facet_normals(PolygonView mesh, std::span<const Vec3d> positions, con
 NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<const std::uint32_t> faces,
                             const std::vector<std::uint8_t>& moved) {
   const std::span<const Vec3d> positions = mesh.positions;
-  if (source.format == Format::Stl) return facet_normals(mesh, positions, moved);
+  if (source.document->normals_of() == NormalsOf::Facets) return facet_normals(mesh, positions, moved);
   NewNormals normals;
-  normals.value.assign(source.normal_count(), Vec3d(0.0));
+  normals.value.assign(source.normal_count, Vec3d(0.0));
   if (std::none_of(moved.begin(), moved.end(), [](auto each) { return each != 0; })) return normals;
   const CornerNormals normal_of(source);
   const Users users = find_users(source, normal_of, faces);
+  const bool is_of_corners = source.document->normals_of() == NormalsOf::Corners;
   std::atomic<std::size_t> disagreeing = 0;
   for_each_index(normals.value.size(), [&](std::size_t n) {
     Vec3d sum(0.0);
@@ -178,10 +183,10 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
     }
     if (!affected) return;
     normals.value[n] = unit_or_zero(sum);
-    if (source.format == Format::Obj && disagree(mesh, positions, users.of(n), normals.value[n])) ++disagreeing;
+    if (is_of_corners && disagree(mesh, positions, users.of(n), normals.value[n])) ++disagreeing;
   });
   normals.disagreeing = disagreeing;
-  if (source.document)
+  if (!source.document->rows())
     for (std::uint32_t v = 0; v < normals.value.size(); ++v) normals.value[v] = normals.value[normal_of.of_vertex(v)];
   return normals;
 }
@@ -190,7 +195,7 @@ NewNormals normals_of_moved(const MeshFile& source, PolygonView mesh, std::span<
 
 NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                        const PlacedFaces& placed) {
-  if (source.normal_count() == 0) return {};
+  if (source.normal_count == 0) return {};
   std::vector<Vec3d> stored(positions.size());
   std::vector<std::uint8_t> moved(positions.size());
   for_each_index(positions.size(), [&](std::size_t v) {

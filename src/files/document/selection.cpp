@@ -15,7 +15,7 @@
 
 #include "bytes/nearest_names.h"
 #include "bytes/scanner.h"
-#include "document/face_labels.h"
+#include "document/document.h"
 #include "document/face_shapes.h"
 #include "vdb_offset/error.h"
 
@@ -55,16 +55,16 @@ struct Labels {
   std::vector<std::uint8_t> chosen;                      // of each face: 1 if a selector chooses it
 };
 
-class Chooser {
+class Chooser final : public LabelListener {
  public:
   Chooser(std::span<const Selector> selectors, std::size_t faces) : selectors_(selectors) {
     labels_.chosen.reserve(faces);
   }
 
-  void set_groups(std::vector<std::string> names) { groups_ = std::move(names), settle(); }
-  void set_object(std::string name) { object_ = std::move(name), settle(); }
-  void set_material(std::string name) { material_ = std::move(name), settle(); }
-  void add_face() {
+  void set_groups(std::vector<std::string> names) override { groups_ = std::move(names), settle(); }
+  void set_object(std::string name) override { object_ = std::move(name), settle(); }
+  void set_material(std::string name) override { material_ = std::move(name), settle(); }
+  void add_face() override {
     if (!counted_) count_names();
     labels_.chosen.push_back(chosen_);
   }
@@ -96,7 +96,7 @@ class Chooser {
 
 Labels label(const MeshFile& mesh, std::span<const Selector> selectors) {
   Chooser chooser(selectors, mesh.polygons.face_count());
-  visit_labels(mesh, chooser);
+  mesh.document->visit_labels(mesh, chooser);
   return chooser.take();
 }
 
@@ -187,11 +187,12 @@ std::vector<std::uint8_t> marks_of(const MeshFile& mesh, std::span<const Selecto
       mark_from_file(selector.name, labels.chosen);
     } else if (is_label(selector)) {
       require_known(mesh, labels, selector);
-    } else if (!mesh.document) {
-      throw InvalidOption(fmt::format("{}: expected a CAD model for '{}={}', got another file", mesh.path,
-                                      in_words(selector.by), selector.name));
     } else {
-      join(labels.chosen, mesh.document->select(mesh, selector));
+      const auto chosen = mesh.document->select(mesh, selector);
+      if (!chosen)
+        throw InvalidOption(fmt::format("{}: expected a CAD model for '{}={}', got another file", mesh.path,
+                                        in_words(selector.by), selector.name));
+      join(labels.chosen, *chosen);
     }
   }
   return std::move(labels.chosen);

@@ -5,7 +5,7 @@
 
 #include <unordered_map>
 
-#include "document/face_labels.h"
+#include "document/document.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -36,13 +36,13 @@ class NamedWalls {
   bool any_ = false;
 };
 
-struct Collector {
+struct Collector final : LabelListener {
   NamedWalls groups, materials, objects;
 
-  void set_groups(const std::vector<std::string>& names) { groups.set(fmt::format("{}", fmt::join(names, "_"))); }
-  void set_object(std::string name) { objects.set(std::move(name)); }
-  void set_material(std::string name) { materials.set(std::move(name)); }
-  void add_face() {
+  void set_groups(std::vector<std::string> names) override { groups.set(fmt::format("{}", fmt::join(names, "_"))); }
+  void set_object(std::string name) override { objects.set(std::move(name)); }
+  void set_material(std::string name) override { materials.set(std::move(name)); }
+  void add_face() override {
     for (NamedWalls* kind : {&groups, &materials, &objects}) kind->add_face();
   }
 };
@@ -51,7 +51,7 @@ struct Collector {
 
 WallNames wall_names(const MeshFile& mesh) {
   Collector collector;
-  visit_labels(mesh, collector);
+  mesh.document->visit_labels(mesh, collector);
   for (NamedWalls* kind : {&collector.groups, &collector.materials, &collector.objects})
     if (kind->any()) return kind->take();
   return {};

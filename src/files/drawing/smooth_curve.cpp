@@ -49,7 +49,7 @@ double segments_of(double tolerance, const SvgArc& arc) {
   return std::max(1.0, std::ceil(std::abs(2 * arc.half) / step - kRounding));
 }
 
-Vec2d point_of(const SvgBezier& bezier, std::size_t k, std::size_t n) {
+Vec2d point_at(const SvgBezier& bezier, std::size_t k, std::size_t n) {
   const auto& [a, b, c, d] = bezier.points;
   // Written so that the curve from its other end gives the same bits.
   const double s = static_cast<double>(n - k) / static_cast<double>(n),
@@ -57,7 +57,7 @@ Vec2d point_of(const SvgBezier& bezier, std::size_t k, std::size_t n) {
   return (s * s * s * a + t * t * t * d) + 3 * (s * t) * (s * b + t * c);
 }
 
-Vec2d point_of(const SvgArc& arc, std::size_t k, std::size_t n) {
+Vec2d point_at(const SvgArc& arc, std::size_t k, std::size_t n) {
   // Angles on both sides of the middle are the same but for their sign, and so points are symmetric to the last bit.
   const double steps = static_cast<double>(k) - static_cast<double>(n - k);
   const double angle = arc.half * steps / static_cast<double>(n);
@@ -164,7 +164,7 @@ double segments_within(double tolerance, const SvgCurve& curve) {
 Vec2d point_at(const SvgCurve& curve, std::size_t k, std::size_t n) {
   if (k == 0) return first_of(curve);
   if (k == n) return last_of(curve);
-  return std::visit([&](const auto& each) { return point_of(each, k, n); }, curve);
+  return std::visit([&](const auto& each) { return point_at(each, k, n); }, curve);
 }
 
 void SvgBox::add(const Vec2d& p) {

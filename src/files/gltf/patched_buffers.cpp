@@ -23,8 +23,8 @@ void PatchedBuffers::put_block(const Block& block, const MovedMesh& moved) {
       put(block.position, i, block.frame.to_file(moved.precision(before, moved.positions[v])));
       any = true;
     }
-    if (!block.normal || moved.normals.value.empty() || moved.normals.value[v].lengthSqr() == 0) continue;
-    any_tangent |= put_normal(block, i, block.frame.normal_to_file(moved.normals.value[v]));
+    if (!block.normal || moved.normals->value.empty() || moved.normals->value[v].lengthSqr() == 0) continue;
+    any_tangent |= put_normal(block, i, block.frame.normal_to_file(moved.normals->value[v]));
     any_normal = true;
   }
   if (any) changed_.push_back(block.position);

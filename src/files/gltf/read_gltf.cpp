@@ -114,7 +114,7 @@ void parse_gltf(MeshFile& file) {
   file.encoding = Encoding::LittleEndian;
   file.unit_micrometres = kMetre;
   for (const Block& block : contents.blocks)
-    if (block.normal) file.vertex_normals = file.polygons.positions.size();
+    if (block.normal) file.normal_count = file.polygons.positions.size();
   file.document = std::make_shared<GltfDocument>(std::move(contents));
 }
 

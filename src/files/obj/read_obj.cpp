@@ -14,6 +14,7 @@
 #include "bytes/scanner.h"
 #include "document/mesh_readers.h"
 #include "ground/system/memory.h"
+#include "obj/obj_document.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
@@ -276,7 +277,7 @@ std::vector<Counts> count(const MeshFile& file, const std::vector<std::size_t>& 
   return before;
 }
 
-Arrays allocate(MeshFile& file, const Counts& all) {
+Arrays allocate(MeshFile& file, std::vector<std::uint32_t>& corner_normal, const Counts& all) {
   const Scanner end(file.path, file.text(), file.text().size());
   if (all.vertices > kMostVertices || all.normals > kMostVertices || all.corners > kMostVertices)
     end.fail("fewer than 2^32 vertices and face corners");
@@ -284,7 +285,7 @@ Arrays allocate(MeshFile& file, const Counts& all) {
   require_memory(all.vertices * (sizeof(Vec3d) + sizeof(NumberTriple)) + all.normals * sizeof(NumberTriple) +
                      all.corners * corner + all.faces * sizeof(std::uint32_t),
                  file.path);
-  Arrays arrays{file.polygons, file.corner_normal, {}, {}};
+  Arrays arrays{file.polygons, corner_normal, {}, {}};
   arrays.polygons.positions.resize(all.vertices);
   arrays.polygons.corners.resize(all.corners);
   arrays.polygons.face_begin.resize(all.faces + 1);
@@ -299,11 +300,13 @@ Arrays allocate(MeshFile& file, const Counts& all) {
 /// Reads `v`, `vn` and `f` lines; all others will be copied as they are. The lines are counted first, so that runs of
 /// them can be parsed in parallel, each into its own part of the arrays.
 void parse_obj(MeshFile& file) {
-  use_line_feeds(file);
+  const auto rows = std::make_shared<ObjRows>();
+  file.document = rows;
+  rows->has_carriage_returns = use_line_feeds(file);
   const std::vector<std::size_t> cuts = cut_at_lines(file.text(), byte_order_mark(file.text()));
   const std::vector<Counts> before = count(file, cuts);
   const Counts& all = before.back();
-  Arrays arrays = allocate(file, all);
+  Arrays arrays = allocate(file, rows->corner_normal, all);
   std::vector<std::exception_ptr> failed(cuts.size());
   std::vector<std::pair<unsigned, std::vector<std::string>>> extras(cuts.size());
   tbb::parallel_for(std::size_t{1}, cuts.size(), [&](std::size_t run) {
@@ -316,8 +319,9 @@ void parse_obj(MeshFile& file) {
   for (const auto& exception : failed)
     if (exception) std::rethrow_exception(exception);
   if (all.faces == 0) Scanner(file.path, file.text()).fail("at least one face ('f' line)", file.text().size());
-  file.position_at = ByteOffsets(std::move(arrays.position_at));
-  file.normal_at = ByteOffsets(std::move(arrays.normal_at));
+  rows->position_at = ByteOffsets(std::move(arrays.position_at));
+  rows->normal_at = ByteOffsets(std::move(arrays.normal_at));
+  file.normal_count = rows->normal_at.size();
   unsigned held = 0;
   for (const auto& [extra, libraries] : extras) {
     held |= extra;

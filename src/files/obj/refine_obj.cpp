@@ -9,6 +9,7 @@
 #include "derived/interpolate.h"
 #include "derived/refine_writers.h"
 #include "obj/obj_corners.h"
+#include "obj/obj_document.h"
 
 // The source's lines in their order. Behind the last `v`, `vt` and `vn` lines follow those that are added, so that all
 // others keep their numbers; lines of faces that are split become lines of their pieces.
@@ -91,8 +92,9 @@ class ObjRefiner {
         has_vertex_data_(std::find(source_.extras.begin(), source_.extras.end(), "vertex weights or colours") !=
                          source_.extras.end()) {
     if (!overview_.names_unknown_texture) texture_ = refine(overview_.corner_texture, overview_.texture_at.size());
-    normals_ = refine(source_.corner_normal, source_.normal_at.size());
-    for (std::size_t v = 0; has_vertex_data_ && v < source_.position_at.size(); ++v) colours_.look_at(tail(v), kAll);
+    normals_ = refine(rows_of(source_).corner_normal, rows_of(source_).normal_at.size());
+    for (std::size_t v = 0; has_vertex_data_ && v < rows_of(source_).position_at.size(); ++v)
+      colours_.look_at(tail(v), kAll);
   }
 
   std::size_t runs() const { return overview_.before.size(); }
@@ -127,7 +129,7 @@ class ObjRefiner {
   std::string_view word_at(std::uint64_t byte) const { return scanner_at(byte).token(); }
   /// What stands behind a vertex's coordinates.
   Scanner tail(std::size_t v) const {
-    Scanner scanner = scanner_at(source_.position_at[v].at[2]);
+    Scanner scanner = scanner_at(rows_of(source_).position_at[v].at[2]);
     scanner.token();
     return scanner;
   }
@@ -170,7 +172,7 @@ class ObjRefiner {
     std::array<std::array<std::string_view, 3>, 3> words;
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t i = 0; between.of[k] != kNone && i < 3; ++i)
-        words[k][i] = word_at(source_.normal_at[between.of[k]].at[i]);
+        words[k][i] = word_at(rows_of(source_).normal_at[between.of[k]].at[i]);
     append_interpolated_normal(text, origin(between.added), words);
   }
 
@@ -245,7 +247,7 @@ class ObjRefiner {
 
 }  // namespace
 
-Pieces refined_obj(const SharedRefined& content, std::vector<std::string>& lost) {
+Pieces ObjRows::refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>& lost) const {
   const auto refiner = std::make_shared<const ObjRefiner>(content);
   if (refiner->loses_texture())
     lost.emplace_back("texture coordinates of pieces (some faces name ones that are not there)");

@@ -8,9 +8,10 @@
 #include "bytes/obj_lines.h"
 #include "bytes/scanner.h"
 #include "derived/shell_writers.h"
-#include "document/rewrite_in_place.h"
+#include "document/rows.h"
 #include "ground/system/progress_count.h"
 #include "obj/obj_corners.h"
+#include "obj/obj_document.h"
 
 // The file begins with the source's text, with the positions of the outer skin. Then follow the vertices of the inner
 // skin, its faces, which are the source's reversed, and the faces of the rim; both with the statements that the faces
@@ -145,11 +146,12 @@ class ObjShellWriter {
         source_(content->source),
         shell_(content->shell),
         found_(ObjRunFinder(source_).take()),
-        outer_(rewrite_in_place(source_, shell_.outer(), content->precision, content->outer.new_normals())),
+        outer_(rewrite_in_place(source_, shell_.outer(), content->precision,
+                                std::make_shared<NewNormals>(content->outer.new_normals()))),
         elements_inside_(content->inner.is_source() && !content->outer.is_source()),
         has_vertex_data_(std::find(source_.extras.begin(), source_.extras.end(), "vertex weights or colours") !=
                          source_.extras.end()),
-        has_normals_(std::any_of(source_.corner_normal.begin(), source_.corner_normal.end(),
+        has_normals_(std::any_of(rows_of(source_).corner_normal.begin(), rows_of(source_).corner_normal.end(),
                                  [](std::uint32_t n) { return n != kNoNormal; })) {}
 
   std::size_t runs() const { return found_.runs.size(); }
@@ -190,7 +192,7 @@ class ObjShellWriter {
     text += 'v';
     skin.append_position(text, v);
     if (has_vertex_data_) {
-      Scanner words(source_.path, source_.text(), source_.position_at[skin.source_of(v)].at[2], true, '#');
+      Scanner words(source_.path, source_.text(), rows_of(source_).position_at[skin.source_of(v)].at[2], true, '#');
       for (words.token(); !words.at_line_end();) (text += ' ') += words.token();
     }
     text += '\n';
@@ -313,7 +315,7 @@ class ObjShellWriter {
 
   void append_inner_face(std::string& text, const ObjLine& line, const Progress& at) const {
     const std::uint32_t face = shell_.skin_face(static_cast<std::uint32_t>(at.faces));
-    append_face(text, line, at, shell_.skin_faces() + face, source_.normal_at.size());
+    append_face(text, line, at, shell_.skin_faces() + face, rows_of(source_).normal_at.size());
   }
 
   /// Appends the face of the shell over the one of a line. Numbers of normals follow `first_normal`.
@@ -325,7 +327,7 @@ class ObjShellWriter {
     text += 'f';
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const std::uint32_t corner = shell_.source_corner(mesh, face, k);
-      const std::uint32_t normal = has_normals_ ? source_.corner_normal[corner] : kNoNormal;
+      const std::uint32_t normal = has_normals_ ? rows_of(source_).corner_normal[corner] : kNoNormal;
       append_corner(text, std::uint64_t{corners[k]} + 1, textures[corner - mesh.face_begin[at.faces]],
                     normal == kNoNormal ? 0 : first_normal + normal + 1);
     }
@@ -370,10 +372,10 @@ class ObjShellWriter {
 
 }  // namespace
 
-Pieces shell_to_obj(const SharedShell& content, std::vector<std::string>& lost) {
+Pieces ObjRows::with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const {
   const auto writer = std::make_shared<const ObjShellWriter>(content);
   if (writer->misplaces_faces()) lost.emplace_back("that the inner skin's first faces are in no object");
-  const std::size_t normals = writer->has_normals() ? content->source.normal_at.size() : 0;
+  const std::size_t normals = writer->has_normals() ? rows_of(content->source).normal_at.size() : 0;
   return in_a_row(
       {{writer->runs(), [=](std::size_t i) { return writer->outer_run(i); }},
        in_sections({}, {{content->shell.polygons.positions.size() - content->shell.source_vertices(),

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "bytes/scanner.h"
-#include "ply/ply_header.h"
+#include "document/binary_number.h"
 
 namespace vdb_offset::io::off {
 Layout layout_of(const MeshFile& file) {
@@ -36,11 +36,11 @@ std::optional<std::size_t> binary_begin(const MeshFile& file) {
 }
 
 double number_at(const MeshFile& file, std::uint64_t at) {
-  return ply::binary_number(file.text().data() + at, {'f', 4}, Encoding::BigEndian);
+  return binary_number(file.text().data() + at, {'f', 4}, Encoding::BigEndian);
 }
 
 std::int64_t integer_at(const MeshFile& file, std::uint64_t at) {
-  return static_cast<std::int64_t>(ply::binary_number(file.text().data() + at, {'i', 4}, Encoding::BigEndian));
+  return static_cast<std::int64_t>(binary_number(file.text().data() + at, {'i', 4}, Encoding::BigEndian));
 }
 
 std::vector<std::uint64_t> face_offsets(const MeshFile& file) {

@@ -68,7 +68,8 @@ std::string TextRows::start(std::size_t vertices, std::size_t faces) const {
 }
 
 std::size_t TextRows::end_of_numbers(std::size_t v) const {
-  const ByteOffsets& last = source_.normal_at.empty() ? source_.position_at : source_.normal_at;
+  const ByteOffsets& last =
+      rows_of(source_).normal_at.empty() ? rows_of(source_).position_at : rows_of(source_).normal_at;
   Scanner scanner = words(last[v].at[2]);
   scanner.token();
   return scanner.position();

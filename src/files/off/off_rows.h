@@ -28,7 +28,7 @@ class TextRows {
   /// The text in front of the first vertex, with other counts. The number of edges becomes 0, which is to say that
   /// they are not counted.
   std::string start(std::size_t vertices, std::size_t faces) const;
-  std::size_t first_of_vertex(std::size_t v) const { return source_.position_at[v].at[0]; }
+  std::size_t first_of_vertex(std::size_t v) const { return rows_of(source_).position_at[v].at[0]; }
   /// The byte behind a vertex's coordinates and its normal, if it has one.
   std::size_t end_of_numbers(std::size_t v) const;
   /// Where each face begins, and the end of the text: what stands behind the last face belongs to it.

@@ -8,6 +8,7 @@
 #include "ground/numbers/rounding.h"
 #include "ground/system/memory.h"
 #include "off/off_binary.h"
+#include "off/off_document.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
@@ -44,11 +45,11 @@ std::size_t count(Scanner& scanner, const char* what, std::size_t least) {
 /// Parses a binary file: numbers of four bytes, big-endian, behind the first line.
 class BinaryOffParser {
  public:
-  BinaryOffParser(MeshFile& file, std::size_t begin) : file_(file), at_(begin) {}
+  BinaryOffParser(MeshFile& file, OffRows& rows, std::size_t begin) : file_(file), rows_(rows), at_(begin) {}
 
   void run() {
     file_.encoding = Encoding::BigEndian;
-    file_.position_bytes = 4;
+    rows_.position_bytes = 4;
     file_.precision = {Rounding::Kind::Single};
     const off::Layout layout = off::layout_of(file_);
     const std::size_t vertices = count("a number of vertices", 4 * layout.width);
@@ -65,10 +66,10 @@ class BinaryOffParser {
   void read_vertices(std::size_t count, const off::Layout& layout) {
     const std::size_t size = 4 * layout.width;
     if (count > left() / size) fail(fmt::format("{} vertices of {} bytes", count, size), "the end of the file", at_);
-    file_.position_at = ByteOffsets(count, at_, size, {0, 4, 8});
+    rows_.position_at = ByteOffsets(count, at_, size, {0, 4, 8});
     if (layout.normal) {
-      file_.normal_bytes = 4;
-      file_.normal_at = ByteOffsets(count, at_ + 4 * layout.normal, size, {0, 4, 8});
+      rows_.normal_bytes = 4;
+      rows_.normal_at = ByteOffsets(count, at_ + 4 * layout.normal, size, {0, 4, 8});
     }
     file_.polygons.positions.resize(count);
     for (std::size_t v = 0; v < count; ++v)
@@ -120,18 +121,17 @@ class BinaryOffParser {
   }
 
   MeshFile& file_;
+  OffRows& rows_;
   std::uint64_t at_;
 };
 
-}  // namespace
-
-void parse_off(MeshFile& file) {
+void parse(MeshFile& file, OffRows& rows) {
   if (const auto begin = off::binary_begin(file)) {
     Scanner scanner(file.path, file.text());
     has_normals(scanner, scanner.token(), file);
-    return BinaryOffParser(file, *begin).run();
+    return BinaryOffParser(file, rows, *begin).run();
   }
-  use_line_feeds(file);
+  rows.has_carriage_returns = use_line_feeds(file);
   Scanner scanner(file.path, file.text(), byte_order_mark(file.text()), false, '#');
   const bool normals = has_normals(scanner, scanner.token_anywhere("the keyword OFF"), file);
   const std::size_t vertices = count(scanner, "a number of vertices", 6);
@@ -165,8 +165,17 @@ void parse_off(MeshFile& file) {
     scanner.next_line();
   }
   if (faces == 0) scanner.fail("at least one face");
-  file.position_at = ByteOffsets(std::move(position_at));
-  file.normal_at = ByteOffsets(std::move(normal_at));
+  rows.position_at = ByteOffsets(std::move(position_at));
+  rows.normal_at = ByteOffsets(std::move(normal_at));
+}
+
+}  // namespace
+
+void parse_off(MeshFile& file) {
+  const auto rows = std::make_shared<OffRows>();
+  file.document = rows;
+  parse(file, *rows);
+  file.normal_count = rows->normal_at.size();
 }
 
 }  // namespace vdb_offset::io

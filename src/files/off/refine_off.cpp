@@ -6,6 +6,7 @@
 #include "derived/interpolate.h"
 #include "derived/refine_writers.h"
 #include "off/off_binary.h"
+#include "off/off_document.h"
 #include "off/off_rows.h"
 
 // The source's rows as they are; those of added vertices behind the others, and those of pieces in the place of their
@@ -23,7 +24,7 @@ class BinaryOffRefiner {
 
   /// All up to the added vertices.
   std::string start() const {
-    const std::size_t counts = *off::binary_begin(source_), vertices = source_.position_at[0].at[0];
+    const std::size_t counts = *off::binary_begin(source_), vertices = rows_of(source_).position_at[0].at[0];
     std::string bytes(source_.text().substr(0, counts));
     off::append_count(bytes, content_->refined().positions.size());
     off::append_count(bytes, content_->refined().face_count());
@@ -56,7 +57,7 @@ class BinaryOffRefiner {
 
  private:
   double number(std::uint32_t v, std::size_t i) const {
-    return off::number_at(source_, source_.position_at[v].at[0] + 4 * i);
+    return off::number_at(source_, rows_of(source_).position_at[v].at[0] + 4 * i);
   }
   Vec3d normal(std::uint32_t v) const {
     return {number(v, layout_.normal), number(v, layout_.normal + 1), number(v, layout_.normal + 2)};
@@ -101,7 +102,7 @@ class TextOffRefiner {
       if (k > 0) text += ' ';
       append_number(text, position[k], source_.precision);
     }
-    if (!source_.normal_at.empty())
+    if (!rows_of(source_).normal_at.empty())
       append_interpolated_normal(text, origin, at_origin(origin, [&](auto v) { return normal(v); }));
     append_interpolated_words(text, origin, at_origin(origin, [&](auto v) { return tail(v); }), byte_colours_);
     text += rows_.line_end();
@@ -133,7 +134,7 @@ class TextOffRefiner {
   }
   Scanner tail(std::size_t v) const { return rows_.words(rows_.end_of_numbers(v)); }
   std::array<std::string_view, 3> normal(std::uint32_t v) const {
-    const NumberTriple at = source_.normal_at[v];
+    const NumberTriple at = rows_of(source_).normal_at[v];
     return {rows_.words(at.at[0]).token(), rows_.words(at.at[1]).token(), rows_.words(at.at[2]).token()};
   }
 
@@ -146,7 +147,7 @@ class TextOffRefiner {
 
 }  // namespace
 
-Pieces refined_off(const SharedRefined& content) {
+Pieces OffRows::refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>&) const {
   const std::size_t added = content->refinement.added.size(), faces = content->mesh().face_count();
   if (content->source.encoding != Encoding::Ascii) {
     const auto refiner = std::make_shared<const BinaryOffRefiner>(content);

@@ -4,6 +4,7 @@
 #include "bytes/append_number.h"
 #include "derived/shell_writers.h"
 #include "off/off_binary.h"
+#include "off/off_document.h"
 #include "off/off_rows.h"
 
 // The file is the source's text up to its faces, with the positions of the outer skin and other counts; then all other
@@ -30,7 +31,7 @@ class BinaryShellWriter {
   }
   void append_vertex(std::string& bytes, ShellPart part, std::size_t v) const {
     const Skin& skin = content_->skin(part);
-    const std::uint64_t begin = source_.position_at[v].at[0];
+    const std::uint64_t begin = rows_of(source_).position_at[v].at[0];
     const std::size_t start = bytes.size();
     bytes += source_.text().substr(begin, 4 * layout_.width);
     const auto put = [&](std::size_t first, const Vec3d& numbers) {
@@ -114,7 +115,7 @@ class OffShellWriter {
     text.append(numbers, 1);
   }
   void append_numbers(std::string& text, const Skin& skin, std::size_t v) const {
-    append_numbers(text, skin, v, !source_.normal_at.empty());
+    append_numbers(text, skin, v, !rows_of(source_).normal_at.empty());
   }
 
   SharedShell content_;
@@ -125,7 +126,7 @@ class OffShellWriter {
 
 }  // namespace
 
-Pieces shell_to_off(const SharedShell& content, std::vector<std::string>& lost) {
+Pieces OffRows::with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const {
   lost.emplace_back(kShellParts);
   if (content->source.encoding != Encoding::Ascii) return shell_to_binary(content);
   const auto writer = std::make_shared<const OffShellWriter>(content);

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "bytes/scanner.h"
+#include "document/binary_number.h"
 #include "vdb_offset/io/mesh_file.h"
 
 /// The header of a PLY file, and the numbers behind it.
 namespace vdb_offset::io::ply {
 
-struct Type {
-  char kind;  // 'i' signed, 'u' unsigned, 'f' floating
-  std::uint8_t bytes;
-};
+using Type = NumberType;
 
 struct Property {
   std::string name;
@@ -53,31 +48,6 @@ const Element* find_strips(const Header& header);
 
 /// Reads the header of a file. \throw InvalidInput
 Header read_header(const MeshFile& file);
-
-template <class T>
-double load(const char* raw) {
-  T value;
-  std::memcpy(&value, raw, sizeof value);
-  return static_cast<double>(value);
-}
-
-/// A binary number; integers may have eight bytes, though a PLY file has none of those.
-inline double binary_number(const char* at, Type type, Encoding encoding) {
-  static_assert(std::endian::native == std::endian::little, "numbers of the other order are turned round");
-  char raw[8];
-  if (encoding == Encoding::BigEndian) std::reverse_copy(at, at + type.bytes, raw);
-  else std::memcpy(raw, at, type.bytes);
-  if (type.kind == 'f') return type.bytes == 4 ? load<float>(raw) : load<double>(raw);
-  if (type.kind == 'u')
-    return type.bytes == 1   ? load<std::uint8_t>(raw)
-           : type.bytes == 2 ? load<std::uint16_t>(raw)
-           : type.bytes == 4 ? load<std::uint32_t>(raw)
-                             : load<std::uint64_t>(raw);
-  return type.bytes == 1   ? load<std::int8_t>(raw)
-         : type.bytes == 2 ? load<std::int16_t>(raw)
-         : type.bytes == 4 ? load<std::int32_t>(raw)
-                           : load<std::int64_t>(raw);
-}
 
 /// Rounds a number of a text to its declared type: other programs read no more digits.
 inline double as_declared(Type type, double value) {

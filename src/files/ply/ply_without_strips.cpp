@@ -3,6 +3,7 @@
 
 #include "bytes/append_number.h"
 #include "derived/refine_writers.h"
+#include "ply/ply_document.h"
 #include "ply/ply_rows.h"
 
 namespace vdb_offset::io {
@@ -90,7 +91,7 @@ class StripReplacer {
 }  // namespace
 }  // namespace ply
 
-std::string ply_without_strips(const MeshFile& source, std::vector<std::string>& lost) {
+std::string PlyRows::with_face_rows(const MeshFile& source, std::vector<std::string>& lost) const {
   return ply::StripReplacer(source).run(lost);
 }
 

@@ -11,6 +11,7 @@
 #include "ground/numbers/rounding.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"
+#include "ply/ply_document.h"
 #include "ply/ply_header.h"
 #include "vdb_offset/error.h"
 
@@ -23,10 +24,12 @@ constexpr std::size_t kLeastPlyVertexLine = 6;
 
 class PlyParser {
  public:
-  explicit PlyParser(MeshFile& file) : file_(file), header_(read_header(file)), body_(file, header_) {}
+  PlyParser(MeshFile& file, PlyRows& rows)
+      : file_(file), rows_(rows), header_(read_header(file)), body_(file, header_) {}
 
   void run() {
     file_.encoding = header_.encoding;
+    rows_.has_strips = find_strips(header_) != nullptr;
     if (!find(header_, "vertex")) missing("an element 'vertex'");
     const Element *const faces = find_faces(header_), *const strips = find_strips(header_);
     if (!faces && !strips) missing("an element 'face' or 'tristrips' with a list 'vertex_indices'");
@@ -57,8 +60,8 @@ class PlyParser {
         file_.encoding == Encoding::Ascii ? read_vertex_lines(element, layout) : read_vertex_records(element, layout);
     if (!plain) read_vertices_one_by_one(element, layout);
     if (layout.normals) file_.extras.emplace_back("normals");
-    if (file_.position_bytes == 4) file_.precision = {Rounding::Kind::Single};
-    if (file_.encoding == Encoding::Ascii) file_.position_bytes = file_.normal_bytes = 0;
+    if (rows_.position_bytes == 4) file_.precision = {Rounding::Kind::Single};
+    if (file_.encoding == Encoding::Ascii) rows_.position_bytes = rows_.normal_bytes = 0;
   }
 
   /// For each property, which component it is: 0 .. 2 of the position, 3 .. 5 of the normal, -1 of neither.
@@ -82,7 +85,7 @@ class PlyParser {
       if (found >> component & 1) missing("each coordinate once");
       found |= 1 << component;
       if (p.type.kind != 'f') missing("floating-point coordinates and normals");
-      std::uint8_t& bytes = component < 3 ? file_.position_bytes : file_.normal_bytes;
+      std::uint8_t& bytes = component < 3 ? rows_.position_bytes : rows_.normal_bytes;
       if (bytes != 0 && bytes != p.type.bytes) missing("one type for all coordinates");
       bytes = p.type.bytes;
     }
@@ -104,7 +107,7 @@ class PlyParser {
     const std::size_t begin = body_.position(), count = element.count;
     if (count > (file_.text().size() - begin) / size) return false;
     const ByteOffsets offsets(count, begin, size, offset[0]);
-    const Type type{'f', file_.position_bytes};
+    const Type type{'f', rows_.position_bytes};
     std::atomic<bool> finite = true;
     require_memory(count * sizeof(Vec3d), file_.path);
     file_.polygons.positions.resize(count);
@@ -114,8 +117,8 @@ class PlyParser {
       for (int k = 0; k < 3; ++k) p[k] = binary_number(file_.text().data() + triple.at[k], type, file_.encoding);
       if (!p.isFinite()) finite = false;
     });
-    file_.position_at = offsets;
-    if (layout.normals) file_.normal_at = ByteOffsets(count, begin, size, offset[1]);
+    rows_.position_at = offsets;
+    if (layout.normals) rows_.normal_at = ByteOffsets(count, begin, size, offset[1]);
     if (finite) body_.go_to(begin + count * size);
     return finite;
   }
@@ -137,14 +140,14 @@ class PlyParser {
         const auto byte = static_cast<std::uint64_t>(cursor.position() - file_.text().data());
         double value = 0;
         if (c < 0 || c >= 3 ? !cursor.skip_word() : !cursor.number(value)) return false;
-        if (c >= 0 && c < 3) file_.polygons.positions[v][c] = as_declared({'f', file_.position_bytes}, value);
+        if (c >= 0 && c < 3) file_.polygons.positions[v][c] = as_declared({'f', rows_.position_bytes}, value);
         if (c >= 0 && (c < 3 || layout.normals)) at[c / 3][v].at[c % 3] = byte;
       }
       return file_.polygons.positions[v].isFinite();
     });
     if (!plain) return false;
-    file_.position_at = ByteOffsets(std::move(at[0]));
-    file_.normal_at = ByteOffsets(std::move(at[1]));
+    rows_.position_at = ByteOffsets(std::move(at[0]));
+    rows_.normal_at = ByteOffsets(std::move(at[1]));
     body_.go_to(lines.end());
     return true;
   }
@@ -176,8 +179,8 @@ class PlyParser {
       position_at.push_back(at[0]);
       if (layout.normals) normal_at.push_back(at[1]);
     }
-    file_.position_at = ByteOffsets(std::move(position_at));
-    file_.normal_at = ByteOffsets(std::move(normal_at));
+    rows_.position_at = ByteOffsets(std::move(position_at));
+    rows_.normal_at = ByteOffsets(std::move(normal_at));
   }
 
   /// Reads the first list of corners that each row has, and skips the rest.
@@ -350,6 +353,7 @@ class PlyParser {
   }
 
   MeshFile& file_;
+  PlyRows& rows_;
   Header header_;
   BodyReader body_;
 };
@@ -357,6 +361,11 @@ class PlyParser {
 }  // namespace
 }  // namespace ply
 
-void parse_ply(MeshFile& file) { ply::PlyParser(file).run(); }
+void parse_ply(MeshFile& file) {
+  const auto rows = std::make_shared<PlyRows>();
+  file.document = rows;
+  ply::PlyParser(file, *rows).run();
+  file.normal_count = rows->normal_at.size();
+}
 
 }  // namespace vdb_offset::io

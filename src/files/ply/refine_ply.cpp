@@ -6,6 +6,7 @@
 #include "bytes/append_number.h"
 #include "derived/interpolate.h"
 #include "derived/refine_writers.h"
+#include "ply/ply_document.h"
 #include "ply/ply_rows.h"
 
 // The source's rows as they are; those of added vertices behind the others, and those of pieces in the place of their
@@ -53,7 +54,7 @@ class PlyRefiner {
         is_widened_(index_type_.kind != rows_.corner_list().type.kind ||
                     index_type_.bytes != rows_.corner_list().type.bytes) {
     for (const Property& property : rows_.vertices().properties)
-      rules_.push_back(rule_of(property, !source_.normal_at.empty()));
+      rules_.push_back(rule_of(property, !rows_of(source_).normal_at.empty()));
   }
 
   /// The pieces of the file: all elements, in their order.
@@ -141,12 +142,12 @@ class PlyRefiner {
   /// The three numbers of an added vertex's normal, as the file has them; the nearest one if it has no direction. None
   /// if there are no normals.
   std::array<std::string, 3> normal_of(const VertexOrigin& origin) const {
-    if (source_.normal_at.empty()) return {};
-    const Type type{'f', rows_.is_text() ? std::uint8_t{4} : source_.normal_bytes};
+    if (rows_of(source_).normal_at.empty()) return {};
+    const Type type{'f', rows_.is_text() ? std::uint8_t{4} : rows_of(source_).normal_bytes};
     std::array<Words, 3> raw;  // of each vertex
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t i = 0; i < 3; ++i)
-        raw[k][i] = rows_.cell_at(type, source_.normal_at[origin.vertex[k]].at[i]).raw;
+        raw[k][i] = rows_.cell_at(type, rows_of(source_).normal_at[origin.vertex[k]].at[i]).raw;
     std::array<std::string, 3> normal;
     if (rows_.is_text()) {
       std::string words;
@@ -246,7 +247,7 @@ class PlyRefiner {
 }  // namespace
 }  // namespace ply
 
-Pieces refined_ply(const SharedRefined& content) {
+Pieces PlyRows::refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>&) const {
   return ply::PlyRefiner::pieces(std::make_shared<const ply::PlyRefiner>(content));
 }
 

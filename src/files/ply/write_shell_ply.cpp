@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "derived/shell_writers.h"
+#include "ply/ply_document.h"
 #include "ply/ply_rows.h"
 
 // The rows of both skins, and of the rim, are the source's rows with some numbers replaced.
@@ -65,7 +66,7 @@ class PlyShellWriter {
       const Cell cell = rows_.cell_at(property.type, at);
       at = cell.end;
       rows_.separate(bytes, start);
-      if (is_normal && source_.normal_at.empty()) bytes += cell.raw;
+      if (is_normal && rows_of(source_).normal_at.empty()) bytes += cell.raw;
       else if (rows_.is_text() && is_normal) skin.append_normal_component(bytes, v, k, cell.raw);
       else if (rows_.is_text()) skin.append_coordinate(bytes, v, k, cell.raw);
       else append_vertex_number(bytes, skin, v, k, is_normal, property.type, cell.raw);
@@ -149,7 +150,7 @@ class PlyShellWriter {
 }  // namespace
 }  // namespace ply
 
-Pieces shell_to_ply(const SharedShell& content, std::vector<std::string>& lost) {
+Pieces PlyRows::with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const {
   const auto writer = std::make_shared<const ply::PlyShellWriter>(content);
   if (!writer->adds_part()) lost.emplace_back("the parts of the shell (the face property 'part' is taken)");
   return ply::PlyShellWriter::pieces(writer);

@@ -11,6 +11,7 @@
 #include "ground/numbers/rounding.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"
+#include "stl/stl_document.h"
 #include "stl/stl_layout.h"
 #include "vdb_offset/error.h"
 
@@ -21,14 +22,14 @@ using stl::kFacet, stl::kFirst;
 
 class AsciiStlParser {
  public:
-  explicit AsciiStlParser(MeshFile& file)
-      : file_(file), scanner_(file.path, file.text(), byte_order_mark(file.text())) {}
+  AsciiStlParser(MeshFile& file, StlRows& rows)
+      : file_(file), rows_(rows), scanner_(file.path, file.text(), byte_order_mark(file.text())) {}
 
   void run() {
     while (!scanner_.at_text_end()) solid();
     if (file_.polygons.face_count() == 0) scanner_.fail("at least one facet");
-    file_.position_at = ByteOffsets(std::move(position_at_));
-    file_.normal_at = ByteOffsets(std::move(normal_at_));
+    rows_.position_at = ByteOffsets(std::move(position_at_));
+    rows_.normal_at = ByteOffsets(std::move(normal_at_));
   }
 
  private:
@@ -71,6 +72,7 @@ class AsciiStlParser {
   }
 
   MeshFile& file_;
+  StlRows& rows_;
   Scanner scanner_;
   std::vector<NumberTriple> position_at_, normal_at_;
   MemoryWatch held_{file_.path, 3 * (sizeof(Vec3d) + sizeof(NumberTriple)) + sizeof(NumberTriple) + 4 * 4};
@@ -82,18 +84,18 @@ std::uint32_t promised_facets(const MeshFile& file) {
   return count;
 }
 
-void parse_binary(MeshFile& file) {
+void parse_binary(MeshFile& file, StlRows& rows) {
   static_assert(std::endian::native == std::endian::little, "binary numbers are copied as they are");
   const std::size_t facets = promised_facets(file);
   file.encoding = Encoding::LittleEndian;
-  file.position_bytes = file.normal_bytes = 4;
+  rows.position_bytes = rows.normal_bytes = 4;
   file.precision = {Rounding::Kind::Single};
   if (facets == 0) throw InvalidInput(file.path + ", byte 80: expected at least one facet, got a count of 0");
   if (3 * facets > kMostVertices)
     throw InvalidInput(
         fmt::format("{}, byte 80: expected at most {} facets, got {}", file.path, kMostVertices / 3, facets));
-  file.normal_at = ByteOffsets(facets, kFirst, kFacet, {0, 4, 8});
-  file.position_at = ByteOffsets(3 * facets, kFirst + 12, kFacet, {0, 4, 8}, 3, 12);
+  rows.normal_at = ByteOffsets(facets, kFirst, kFacet, {0, 4, 8});
+  rows.position_at = ByteOffsets(3 * facets, kFirst + 12, kFacet, {0, 4, 8}, 3, 12);
   Polygons& polygons = file.polygons;
   require_memory(facets * (3 * sizeof(Vec3d) + 4 * sizeof(std::uint32_t)), file.path);
   polygons.positions.resize(3 * facets);
@@ -104,7 +106,7 @@ void parse_binary(MeshFile& file) {
     polygons.face_begin[f + 1] = static_cast<std::uint32_t>(3 * f + 3);
     for (std::size_t v = 3 * f; v < 3 * f + 3; ++v) {
       polygons.corners[v] = static_cast<std::uint32_t>(v);
-      const std::uint64_t at = file.position_at[v].at[0];
+      const std::uint64_t at = rows.position_at[v].at[0];
       float xyz[3];
       std::memcpy(xyz, file.text().data() + at, sizeof xyz);
       for (std::size_t k = 0; k < 3; ++k)
@@ -119,19 +121,17 @@ void parse_binary(MeshFile& file) {
       fmt::format("{}, byte {}: expected a finite coordinate, got {}", file.path, first_bad.load(), bad));
 }
 
-}  // namespace
-
-void parse_stl(MeshFile& file) {
+void parse(MeshFile& file, StlRows& rows) {
   const std::string_view bytes = file.text();
   const bool says_solid = is_word(Scanner(file.path, bytes, byte_order_mark(bytes)).first_word(), "solid");
   const bool holds_header = bytes.size() >= kFirst;
   // Binary files may also start with "solid": their size tells them from texts. Bytes behind the last facet are kept.
   if (holds_header && (bytes.size() == kFirst + kFacet * std::size_t{promised_facets(file)} ||
                        (!says_solid && bytes.size() > kFirst + kFacet * std::size_t{promised_facets(file)})))
-    return parse_binary(file);
+    return parse_binary(file, rows);
   if (says_solid) {
-    use_line_feeds(file);
-    return AsciiStlParser(file).run();
+    rows.has_carriage_returns = use_line_feeds(file);
+    return AsciiStlParser(file, rows).run();
   }
   if (!holds_header)
     throw InvalidInput(fmt::format("{}, byte 0: expected 'solid' or a binary STL header of 84 bytes, got {} bytes",
@@ -139,6 +139,15 @@ void parse_stl(MeshFile& file) {
   throw InvalidInput(fmt::format("{}, byte 80: expected {} facets, which take {} bytes, got a file of {} bytes",
                                  file.path, promised_facets(file), kFirst + kFacet * std::size_t{promised_facets(file)},
                                  bytes.size()));
+}
+
+}  // namespace
+
+void parse_stl(MeshFile& file) {
+  const auto rows = std::make_shared<StlRows>();
+  file.document = rows;
+  parse(file, *rows);
+  file.normal_count = rows->normal_at.size();
 }
 
 }  // namespace vdb_offset::io

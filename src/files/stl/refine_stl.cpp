@@ -5,6 +5,7 @@
 #include "bytes/append_number.h"
 #include "bytes/scanner.h"
 #include "derived/refine_writers.h"
+#include "stl/stl_document.h"
 #include "stl/stl_layout.h"
 
 // Each piece is the facet itself with other coordinates, so that normals, attribute bytes and remarks stay.
@@ -49,7 +50,7 @@ class StlRefiner {
  private:
   /// Where the word `facet` begins: two words in front of the normal.
   std::size_t begin_of(std::size_t f) const {
-    std::size_t at = source_.normal_at[f].at[0];
+    std::size_t at = rows_of(source_).normal_at[f].at[0];
     for (int words = 0; words < 2; ++words) {
       at = source_.text().find_last_not_of(kBlanks, at - 1);
       at = source_.text().find_last_of(kBlanks, at) + 1;
@@ -58,7 +59,7 @@ class StlRefiner {
   }
   /// Where the word `endfacet` ends. Remarks may stand between it and the loop's end.
   std::size_t end_of(std::size_t f) const {
-    Scanner scanner(source_.path, source_.text(), source_.position_at[3 * f + 2].at[2]);
+    Scanner scanner(source_.path, source_.text(), rows_of(source_).position_at[3 * f + 2].at[2]);
     scanner.token();
     scanner.token_anywhere("'endloop'");
     stl::skip_remark(scanner);
@@ -78,12 +79,12 @@ class StlRefiner {
     const auto own = content_->mesh().face(f), face = content_->refined().face(piece);
     std::size_t copied = begin;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const NumberTriple to = source_.position_at[own[corner]];
+      const NumberTriple to = rows_of(source_).position_at[own[corner]];
       const auto* const known = std::find(own.data(), own.data() + own.size(), face[corner]);
       for (int k = 0; k < 3; ++k) {
         text += source_.text().substr(copied, to.at[k] - copied);
         copied = to.at[k] + word_at(to.at[k]).size();
-        if (known != own.data() + own.size()) text += word_at(source_.position_at[*known].at[k]);
+        if (known != own.data() + own.size()) text += word_at(rows_of(source_).position_at[*known].at[k]);
         else append_number(text, content_->refined().positions[face[corner]][k], source_.precision);
       }
     }
@@ -99,7 +100,7 @@ class StlRefiner {
 
 }  // namespace
 
-Pieces refined_stl(const SharedRefined& content) {
+Pieces StlRows::refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>&) const {
   const auto refiner = std::make_shared<const StlRefiner>(content);
   const std::size_t facets = content->mesh().face_count();
   if (content->source.encoding == Encoding::Ascii)

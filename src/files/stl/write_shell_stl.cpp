@@ -6,6 +6,7 @@
 #include "bytes/scanner.h"
 #include "derived/shell_writers.h"
 #include "ground/mesh/triangulate.h"
+#include "stl/stl_document.h"
 #include "stl/stl_layout.h"
 
 namespace vdb_offset::io {
@@ -90,7 +91,7 @@ class StlShellWriter {
     for (int k = 0; k < 3; ++k) append_binary(bytes, static_cast<float>(p[k]));
   }
   void append_old_normal(std::string& bytes, std::size_t f, bool reversed) const {
-    const NumberTriple at = source_.normal_at[f];
+    const NumberTriple at = rows_of(source_).normal_at[f];
     for (const std::uint64_t byte : at.at) {
       float number = 0;
       std::memcpy(&number, source_.text().data() + byte, sizeof number);
@@ -162,7 +163,7 @@ Pieces binary_stl(const SharedShell& content, const SharedStlWriter& writer) {
 
 }  // namespace
 
-Pieces shell_to_stl(const SharedShell& content, std::vector<std::string>& lost) {
+Pieces StlRows::with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const {
   const auto writer = std::make_shared<const StlShellWriter>(content);
   if (content->source.encoding == Encoding::Ascii) return solids(content, writer, lost);
   lost.emplace_back(kShellParts);

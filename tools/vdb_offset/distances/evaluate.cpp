@@ -21,8 +21,8 @@ Distances read_distances(const Source& source, const std::string& from) {
     if (!source.file)
       throw InvalidInput(
           fmt::format("expected a mesh from a file for '{}', as curves and scenes have no properties", from));
-    const std::size_t kind = from.find(':') + 1;  // one is for PLY, the other for files that hold more than a mesh
-    if (source.file->document.operator bool() != from.starts_with("vtk:"))
+    const std::size_t kind = from.find(':') + 1;
+    if (io::has_rows(*source.file) == from.starts_with("vtk:"))
       throw InvalidInput(fmt::format("{}: expected 'ply:NAME' for a PLY file and 'vtk:NAME' for one of VTK's, got '{}'",
                                      source.file->path, from));
     return Distances(io::vertex_property(*source.file, from.substr(kind)));

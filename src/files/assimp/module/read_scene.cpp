@@ -105,7 +105,7 @@ class SceneReader {
     if (scene_.mNumMaterials > 0) extra("what materials are made of");
     if (scene_.mNumCameras + scene_.mNumLights > 0) extra("cameras and lights");
     file_.encoding = Encoding::LittleEndian;
-    if (has_normals_) file_.vertex_normals = file_.polygons.positions.size();
+    if (has_normals_) file_.normal_count = file_.polygons.positions.size();
     attributes_.has_alpha = has_colours_;
     file_.document = std::make_shared<AssimpDocument>(std::move(attributes_), std::move(names_));
   }

@@ -108,7 +108,7 @@ void parse_with_vtk(MeshFile& file) {
     if (faces.of_strips > 0) file.remarks.emplace_back("strips of triangles are read as triangles");
     if (count_of(file.text().substr(0, file.text().find("<AppendedData")), "<Piece") > 1)
       file.remarks.emplace_back("has several pieces, which are written as one");
-    if (document->normals()) file.vertex_normals = file.polygons.positions.size();
+    if (document->normals()) file.normal_count = file.polygons.positions.size();
     file.document = std::move(document);
   } catch (const std::bad_alloc&) {
     throw OutOfBudget(file.path + ": expected a file whose arrays fit into memory, got one that asks for more");

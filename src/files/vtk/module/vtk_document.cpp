@@ -163,9 +163,9 @@ WrittenDocument VtkDocument::rewrite(const MovedMesh& moved) const {
   placed->SetData(points);
   copy->SetPoints(placed);
   vtkSmartPointer<vtkDataArray> turned;
-  if (normals() && !moved.normals.value.empty()) {
+  if (normals() && !moved.normals->value.empty()) {
     turned = with_values(*normals(), [&](std::size_t v) -> std::optional<Vec3d> {
-      const Vec3d& normal = moved.normals.value[v];
+      const Vec3d& normal = moved.normals->value[v];
       return normal.lengthSqr() > 0 ? std::optional(normal) : std::nullopt;
     });
     turned->SetName(normals()->GetName());

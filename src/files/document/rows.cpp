@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "document/rewrite_in_place.h"
+#include "document/rows.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -12,6 +14,7 @@
 #include "bytes/line_records.h"
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
+#include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -28,10 +31,15 @@ struct ChangedNumber {
 
 class Rewriter {
  public:
-  Rewriter(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision, NewNormals normals)
-      : source_(source), positions_(positions), precision_(precision), normals_(std::move(normals)) {
+  Rewriter(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
+           std::shared_ptr<const NewNormals> normals)
+      : source_(source),
+        rows_(rows_of(source)),
+        positions_(positions),
+        precision_(precision),
+        normals_(std::move(normals)) {
     VDB_OFFSET_ASSERT(positions.size() == source.polygons.positions.size());
-    VDB_OFFSET_ASSERT(source.position_at.size() == positions.size());
+    VDB_OFFSET_ASSERT(rows_.position_at.size() == positions.size());
     cuts_ = source.encoding == Encoding::Ascii ? cut_at_lines(source.text(), 0) : cut_between_numbers();
   }
 
@@ -52,7 +60,7 @@ class Rewriter {
     while (cuts.back() < size) {
       std::uint64_t cut = std::min(cuts.back() + kPiece, size);
       for (const auto& [offsets, bytes] :
-           {std::pair{&source_.position_at, source_.position_bytes}, {&source_.normal_at, source_.normal_bytes}}) {
+           {std::pair{&rows_.position_at, rows_.position_bytes}, {&rows_.normal_at, rows_.normal_bytes}}) {
         const std::size_t i = offsets->first_from(cut);
         if (i > 0) cut = std::max(cut, last_of((*offsets)[i - 1]) + bytes);
         if (i < offsets->size() && first_of((*offsets)[i]) < cut) cut = last_of((*offsets)[i]) + bytes;
@@ -78,13 +86,13 @@ class Rewriter {
           if (triple.at[k] >= begin && triple.at[k] < end) visit(triple.at[k], (*value)[k], of_normals);
       }
     };
-    each(source_.position_at, false, [&](std::size_t v) -> std::optional<Vec3d> {
+    each(rows_.position_at, false, [&](std::size_t v) -> std::optional<Vec3d> {
       if (moved(v)) return precision_(positions_[v]);
       return std::nullopt;
     });
-    if (!normals_.value.empty())
-      each(source_.normal_at, true, [&](std::size_t n) -> std::optional<Vec3d> {
-        if (normals_.value[n].lengthSqr() > 0) return normals_.value[n];
+    if (!normals_->value.empty())
+      each(rows_.normal_at, true, [&](std::size_t n) -> std::optional<Vec3d> {
+        if (normals_->value[n].lengthSqr() > 0) return normals_->value[n];
         return std::nullopt;
       });
   }
@@ -117,8 +125,8 @@ class Rewriter {
   bool ends_number(std::uint64_t at) const {
     const char c = source_.text()[at];
     if (is_blank(c) || c == '\n') return true;
-    if (c == '#') return source_.format == Format::Obj || source_.format == Format::Off;
-    if (c != '\\' || source_.format != Format::Obj) return false;
+    if (c == rows_.syntax().comment && c != '\0') return true;
+    if (c != '\\' || !rows_.syntax().joins_lines) return false;
     const std::string_view rest = source_.text().substr(at);
     return rest.starts_with("\\\n") || rest.starts_with("\\\r\n");
   }
@@ -127,7 +135,7 @@ class Rewriter {
     std::string bytes(source_.text().substr(begin, end - begin));
     for_each_number(begin, end, [&](std::uint64_t at, double value, bool of_normal) {
       char raw[8];
-      const std::uint8_t size = of_normal ? source_.normal_bytes : source_.position_bytes;
+      const std::uint8_t size = of_normal ? rows_.normal_bytes : rows_.position_bytes;
       const auto narrow = static_cast<float>(value);
       if (size == 4) std::memcpy(raw, &narrow, 4);
       else std::memcpy(raw, &value, 8);
@@ -138,16 +146,47 @@ class Rewriter {
   }
 
   const MeshFile& source_;
+  const Rows& rows_;
   std::span<const Vec3d> positions_;
   Rounding precision_;
-  NewNormals normals_;
+  std::shared_ptr<const NewNormals> normals_;
   std::vector<std::size_t> cuts_;
 };
 
 }  // namespace
 
+const Rows& rows_of(const MeshFile& file) {
+  VDB_OFFSET_ASSERT(has_rows(file));
+  return *file.document->rows();
+}
+
+WrittenDocument Rows::rewrite(const MovedMesh& moved) const {
+  return {rewrite_in_place(moved.source, moved.positions, moved.precision, moved.normals), {}, {}};
+}
+
+std::vector<double> Rows::vertex_numbers(const MeshFile& source, const std::string& name) const {
+  throw InvalidInput(fmt::format("{}: expected a PLY file, whose vertices can have a property '{}', found {}",
+                                 source.path, name, io::name(source.format)));
+}
+
+// Of a format that has no faces there are no shells and refinements.
+std::string Rows::with_face_rows(const MeshFile& source, std::vector<std::string>&) const {
+  return std::string(source.text());
+}
+Pieces Rows::with_shell(const std::shared_ptr<const ShellContent>&, std::vector<std::string>&) const { return {}; }
+Pieces Rows::refined(const std::shared_ptr<const RefinedContent>&, std::vector<std::string>&) const { return {}; }
+
+bool use_line_feeds(MeshFile& file) {
+  const std::string_view text = file.text();
+  if (text.find('\n') != std::string_view::npos || text.find('\r') == std::string_view::npos) return false;
+  std::string lines(text);
+  std::replace(lines.begin(), lines.end(), '\r', '\n');
+  file.bytes.show(std::move(lines));
+  return true;
+}
+
 Pieces with_line_ends_of(const MeshFile& source, Pieces pieces) {
-  if (!source.has_carriage_returns) return pieces;
+  if (!rows_of(source).has_carriage_returns) return pieces;
   return {pieces.count, [make = std::move(pieces.make)](std::size_t piece) {
             std::string text = make(piece);
             std::replace(text.begin(), text.end(), '\n', '\r');
@@ -156,7 +195,7 @@ Pieces with_line_ends_of(const MeshFile& source, Pieces pieces) {
 }
 
 Pieces rewrite_in_place(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
-                        NewNormals normals) {
+                        std::shared_ptr<const NewNormals> normals) {
   const auto rewriter = std::make_shared<const Rewriter>(source, positions, precision, std::move(normals));
   return with_line_ends_of(source,
                            {rewriter->pieces(), [rewriter](std::size_t piece) { return rewriter->make(piece); }});
