@@ -224,7 +224,7 @@ CurveFile parse_bytes(const std::string& name, CurveFormat format, FileBytes byt
   return curves;
 }
 
-void append_point(std::string& text, const Vec3d& p, int count, const Rounding& precision) {
+void append_curve_point(std::string& text, const Vec3d& p, int count, const Rounding& precision) {
   for (int k = 0; k < count; ++k) {
     if (k > 0) text += ' ';
     append_number(text, precision(p[k]), precision);
@@ -234,7 +234,7 @@ void append_point(std::string& text, const Vec3d& p, int count, const Rounding& 
 
 std::string as_obj(CurvesView curves, const Rounding& precision) {
   std::string text;
-  for (const Vec3d& p : curves.positions) append_point(text += "v ", p, 3, precision);
+  for (const Vec3d& p : curves.positions) append_curve_point(text += "v ", p, 3, precision);
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
     if (curves.face(c).size() < 2) continue;  // an element has two points at least
     text += 'l';
@@ -251,7 +251,7 @@ std::string as_text(CurvesView curves, const Rounding& precision) {
   std::string text;
   for (std::size_t c = 0; c < curves.face_count(); ++c) {
     if (c > 0) text += '\n';
-    for (const auto p : curves.face(c)) append_point(text, curves.positions[p], planar ? 2 : 3, precision);
+    for (const auto p : curves.face(c)) append_curve_point(text, curves.positions[p], planar ? 2 : 3, precision);
   }
   return text;
 }

@@ -29,6 +29,5 @@ endfunction()
 set(rounding ../engine/ground/numbers/rounding)
 vdb_offset_module(vtk_meshes "VTK::IOXML;VTK::IOLegacy" vtk/module document/trial document/document bytes/nearest_names ${rounding})
 vdb_offset_module(assimp assimp::assimp assimp/module document/trial document/document ${rounding})
-vdb_offset_module(vtk "VTK::CommonMisc;VTK::IOXML" volume/vtk volume/patch_words)
 vdb_offset_module(cgns vdb_offset_cgns volume/cgns volume/patch_words ../engine/products/volume/volume_faces
   ../engine/products/volume/volume_mesh)

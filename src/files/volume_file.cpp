@@ -103,9 +103,7 @@ void require_standard_cells(const std::string& path, const VolumeMesh& mesh, con
 }
 
 void require_volume_writer(const std::string& path) {
-  const auto format = volume_format_of(path);
-  if (format == VolumeFormat::Cgns) require_cgns(path);
-  if (format == VolumeFormat::Vtu || structured_format_of(path) == StructuredFormat::Vts) require_vtk(path);
+  if (volume_format_of(path) == VolumeFormat::Cgns) require_cgns(path);
 }
 
 VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh) {

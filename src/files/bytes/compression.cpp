@@ -145,4 +145,14 @@ std::string compress(Compression compression, const std::string& bytes) {
   return compression == Compression::Gzip ? to_gzip(bytes) : to_zstd(bytes);
 }
 
+std::string compress_block(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string packed(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                bytes.size(), Z_BEST_SPEED) != Z_OK)
+    throw std::bad_alloc();
+  packed.resize(size);
+  return packed;
+}
+
 }  // namespace vdb_offset::io

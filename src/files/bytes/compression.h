@@ -21,4 +21,7 @@ std::string decompress(Compression compression, const std::string& path, std::st
 /// Compresses bytes to one member or frame. A file may consist of several.
 std::string compress(Compression compression, const std::string& bytes);
 
+/// Compresses bytes in zlib's own format, as blocks of VTK's files are.
+std::string compress_block(const std::string& bytes);
+
 }  // namespace vdb_offset::io

@@ -17,17 +17,14 @@ struct WrittenFile {
 };
 
 // The writers of all formats. \pre the mesh's arrays fit each other. \throw WriteError, InvalidInput (volume_file.h).
-// write_vtu() gives cells VTK's order of corners.
 void write_msh(const std::string& path, const VolumeMesh& mesh);
 void write_su2(const std::string& path, const VolumeMesh& mesh);
 FoamQuality write_foam(const std::string& path, const VolumeMesh& mesh);
-void write_vtu(const WrittenFile& file, VolumeMesh& mesh);
+void write_vtu(const WrittenFile& file, VolumeMesh& mesh);  ///< Gives prisms VTK's order of corners.
 void write_vts(const WrittenFile& file, const StructuredBlock& block);
 void write_cgns(const WrittenFile& file, const VolumeMesh& mesh);
 
-// Check that these formats can be written here. \throw InvalidOption if the build is without VTK or CGNS, WriteError if
-// its module is missing.
-void require_vtk(const std::string& path);
+/// Checks that .cgns can be written here. \throw WriteError if its module is missing
 void require_cgns(const std::string& path);
 
 bool has_polyhedra(const VolumeMesh& mesh);

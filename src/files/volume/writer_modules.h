@@ -6,14 +6,8 @@
 #include "vdb_offset/api.h"
 #include "volume/volume_writers.h"
 
-// The writers that use VTK and CGNS are modules of the command (see bytes/open_module.h).
+// The writer that uses CGNS is a module (see bytes/open_module.h).
 namespace vdb_offset::io {
-
-struct VtkModule {
-  const char* version;
-  void (*write_vtu)(const WrittenFile&, VolumeMesh&);
-  void (*write_vts)(const WrittenFile&, const StructuredBlock&);
-};
 
 struct CgnsModule {
   const char* version;
@@ -23,6 +17,5 @@ struct CgnsModule {
 }  // namespace vdb_offset::io
 
 // NOLINTBEGIN(readability-identifier-naming): each is found by its module's name
-extern "C" VDB_OFFSET_API const vdb_offset::io::VtkModule vdb_offset_vtk;
 extern "C" VDB_OFFSET_API const vdb_offset::io::CgnsModule vdb_offset_cgns;
 // NOLINTEND(readability-identifier-naming)

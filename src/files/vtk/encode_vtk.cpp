@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// New files of VTK's formats (VTK File Formats). What is not compressed is simple enough that it needs no VTK.
+// New files of VTK's formats (VTK File Formats).
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -11,22 +10,12 @@
 #include <vector>
 
 #include "bytes/append_number.h"
+#include "bytes/vtk_xml.h"
 #include "document/documents.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers are appended as this machine holds them");
-
-/// Bytes of an array that is made item by item.
-struct VtkArray {
-  std::string name;
-  const char* type;
-  int components;
-  std::size_t bytes;  ///< Of all items.
-  Section section;
-};
 
 template <class Number>
 void append_big_endian(std::string& bytes, Number number) {
@@ -58,12 +47,11 @@ const char* floating(bool single, bool legacy) {
 
 VtkArray points_of(const SharedContent& content, NumberOrder order) {
   const std::size_t count = content->mesh.positions.size();
-  return {"Points", "Float64", 3, count * 3 * sizeof(double), {count, [=](std::string& bytes, std::size_t v) {
-                                                                 order.append_point(
-                                                                     bytes,
-                                                                     content->precision(content->mesh.positions[v]),
-                                                                     false);
-                                                               }}};
+  return {"Points", "Float64", 3, 3 * sizeof(double), {count, [=](std::string& bytes, std::size_t v) {
+                                                         order.append_point(
+                                                             bytes, content->precision(content->mesh.positions[v]),
+                                                             false);
+                                                       }}};
 }
 
 VtkArray normals_of(const SharedContent& content, NumberOrder order) {
@@ -72,7 +60,7 @@ VtkArray normals_of(const SharedContent& content, NumberOrder order) {
   return {"Normals",
           floating(normals.single, order.big_endian),
           3,
-          count * 3 * width,
+          3 * width,
           {count, [=](std::string& bytes, std::size_t v) {
              order.append_point(bytes, content->with.normals.value[v], content->with.normals.single);
            }}};
@@ -84,7 +72,7 @@ VtkArray texture_of(const SharedContent& content, NumberOrder order) {
   return {"TextureCoordinates",
           floating(texture.single, order.big_endian),
           2,
-          count * 2 * width,
+          2 * width,
           {count, [=](std::string& bytes, std::size_t v) {
              order.append_point(bytes, content->with.texture.value[v], content->with.texture.single);
            }}};
@@ -96,7 +84,7 @@ VtkArray colours_of(const SharedContent& content) {
   return {"Colors",
           "UInt8",
           components,
-          count * static_cast<std::size_t>(components),
+          static_cast<std::size_t>(components),
           {count, [=](std::string& bytes, std::size_t v) {
              for (std::size_t k = 0; k < static_cast<std::size_t>(components); ++k)
                append_binary(bytes, colour_byte(content->with.colours[v][k]));
@@ -106,13 +94,13 @@ VtkArray colours_of(const SharedContent& content) {
 /// Which part each face is of, 0 for the first; \pre there are fewer than 256.
 VtkArray parts_of(const SharedContent& content) {
   const std::size_t count = content->mesh.face_count();
-  return {"part", "UInt8", 1, count, {count, [=](std::string& bytes, std::size_t f) {
-                                        std::uint8_t part = 0;
-                                        for (std::size_t end = content->parts[0].faces; f >= end;
-                                             end += content->parts[part].faces)
-                                          ++part;
-                                        append_binary(bytes, part);
-                                      }}};
+  return {"part", "UInt8", 1, 1, {count, [=](std::string& bytes, std::size_t f) {
+                                    std::uint8_t part = 0;
+                                    for (std::size_t end = content->parts[0].faces; f >= end;
+                                         end += content->parts[part].faces)
+                                      ++part;
+                                    append_binary(bytes, part);
+                                  }}};
 }
 
 /// VTK's number of a cell of so many corners: VTK_TRIANGLE, VTK_QUAD or VTK_POLYGON.
@@ -120,70 +108,52 @@ std::uint8_t cell_type(std::size_t corners) {
   return corners == 3 ? std::uint8_t{5} : corners == 4 ? std::uint8_t{9} : std::uint8_t{7};
 }
 
-/// An XML file: a text, and behind it the arrays, each with its bytes counted before it.
 class XmlFile {
  public:
-  XmlFile(Format format, SharedContent content) : content_(std::move(content)), is_grid_(format == Format::Vtu) {}
+  XmlFile(Format format, SharedContent content)
+      : content_(std::move(content)),
+        is_grid_(format == Format::Vtu),
+        xml_(is_grid_ ? "UnstructuredGrid" : "PolyData") {}
 
   Pieces pieces() {
     const PolygonView& mesh = content_->mesh;
-    const char* const kind = is_grid_ ? "UnstructuredGrid" : "PolyData";
-    text_ = fmt::format(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" "
-        "header_type=\"UInt64\">\n<{}>\n",
-        kind, kind);
     add_part_names();
-    text_ += fmt::format("<Piece NumberOfPoints=\"{}\" {}=\"{}\">\n", mesh.positions.size(),
-                         is_grid_ ? "NumberOfCells" : "NumberOfPolys", mesh.face_count());
+    xml_.add_text(fmt::format("<Piece NumberOfPoints=\"{}\" {}=\"{}\">\n", mesh.positions.size(),
+                              is_grid_ ? "NumberOfCells" : "NumberOfPolys", mesh.face_count()));
     add_point_data();
     if (!content_->parts.empty()) {
-      text_ += "<CellData>\n";
-      add(parts_of(content_));
-      text_ += "</CellData>\n";
+      xml_.add_text("<CellData>\n");
+      xml_.add(parts_of(content_));
+      xml_.add_text("</CellData>\n");
     }
-    text_ += "<Points>\n";
-    add(points_of(content_, order_));
-    text_ += "</Points>\n";
+    xml_.add_text("<Points>\n");
+    xml_.add(points_of(content_, order_));
+    xml_.add_text("</Points>\n");
     add_cells();
-    text_ += fmt::format("</Piece>\n</{}>\n<AppendedData encoding=\"raw\">\n_", kind);
-    sections_.push_back({1, [](std::string& bytes, std::size_t) { bytes += "\n</AppendedData>\n</VTKFile>\n"; }});
-    return in_sections(text_, std::move(sections_));
+    xml_.add_text("</Piece>\n");
+    return std::move(xml_).raw();
   }
 
  private:
-  void add(VtkArray array) {
-    text_ += fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-        array.type, array.name, array.components, offset_);
-    offset_ += sizeof(std::uint64_t) + array.bytes;
-    sections_.push_back(
-        {1, [size = std::uint64_t{array.bytes}](std::string& bytes, std::size_t) { append_binary(bytes, size); }});
-    sections_.push_back(std::move(array.section));
-  }
-
   void add_point_data() {
     const Attributes& with = content_->with;
     if (with.normals.empty() && with.texture.empty() && with.colours.empty()) return;
-    text_ += fmt::format("<PointData{}{}{}>\n", with.colours.empty() ? "" : " Scalars=\"Colors\"",
-                         with.normals.empty() ? "" : " Normals=\"Normals\"",
-                         with.texture.empty() ? "" : " TCoords=\"TextureCoordinates\"");
-    if (!with.normals.empty()) add(normals_of(content_, order_));
-    if (!with.texture.empty()) add(texture_of(content_, order_));
-    if (!with.colours.empty()) add(colours_of(content_));
-    text_ += "</PointData>\n";
+    xml_.add_text(fmt::format("<PointData{}{}{}>\n", with.colours.empty() ? "" : " Scalars=\"Colors\"",
+                              with.normals.empty() ? "" : " Normals=\"Normals\"",
+                              with.texture.empty() ? "" : " TCoords=\"TextureCoordinates\""));
+    if (!with.normals.empty()) xml_.add(normals_of(content_, order_));
+    if (!with.texture.empty()) xml_.add(texture_of(content_, order_));
+    if (!with.colours.empty()) xml_.add(colours_of(content_));
+    xml_.add_text("</PointData>\n");
   }
 
-  /// The names of parts as VTK has words: the codes of their bytes, with a 0 behind each.
   void add_part_names() {
     if (content_->parts.empty()) return;
-    text_ +=
-        fmt::format("<FieldData>\n<Array type=\"String\" Name=\"part names\" NumberOfTuples=\"{}\" format=\"ascii\">\n",
-                    content_->parts.size());
-    for (const Part& part : content_->parts) {
-      for (const char c : part.name) text_ += fmt::format("{} ", static_cast<unsigned>(static_cast<unsigned char>(c)));
-      text_ += "0\n";
-    }
-    text_ += "</Array>\n</FieldData>\n";
+    std::vector<std::string> names;
+    for (const Part& part : content_->parts) names.push_back(part.name);
+    xml_.add_text("<FieldData>\n");
+    xml_.add_words("part names", names);
+    xml_.add_text("</FieldData>\n");
   }
 
   void add_cells() {
@@ -197,26 +167,24 @@ class XmlFile {
       else append_binary(bytes, static_cast<std::int64_t>(index));
     };
     const char* const type = narrow ? "Int32" : "Int64";
-    text_ += is_grid_ ? "<Cells>\n" : "<Polys>\n";
-    add({"connectivity", type, 1, corners * width, {corners, [=](std::string& bytes, std::size_t c) {
-                                                      append(bytes, content->mesh.corners[c]);
-                                                    }}});
-    add({"offsets", type, 1, faces * width, {faces, [=](std::string& bytes, std::size_t f) {
-                                               append(bytes, content->mesh.face_begin[f + 1]);
-                                             }}});
+    xml_.add_text(is_grid_ ? "<Cells>\n" : "<Polys>\n");
+    xml_.add({"connectivity", type, 1, width, {corners, [=](std::string& bytes, std::size_t c) {
+                                                 append(bytes, content->mesh.corners[c]);
+                                               }}});
+    xml_.add({"offsets", type, 1, width, {faces, [=](std::string& bytes, std::size_t f) {
+                                            append(bytes, content->mesh.face_begin[f + 1]);
+                                          }}});
     if (is_grid_)
-      add({"types", "UInt8", 1, faces, {faces, [=](std::string& bytes, std::size_t f) {
-                                          append_binary(bytes, cell_type(content->mesh.face(f).size()));
-                                        }}});
-    text_ += is_grid_ ? "</Cells>\n" : "</Polys>\n";
+      xml_.add({"types", "UInt8", 1, 1, {faces, [=](std::string& bytes, std::size_t f) {
+                                           append_binary(bytes, cell_type(content->mesh.face(f).size()));
+                                         }}});
+    xml_.add_text(is_grid_ ? "</Cells>\n" : "</Polys>\n");
   }
 
   SharedContent content_;
   bool is_grid_;
   NumberOrder order_{false};
-  std::string text_;
-  std::uint64_t offset_ = 0;
-  std::vector<Section> sections_;
+  VtkXml xml_;
 };
 
 /// A legacy file, binary: lines of text with the arrays between them, most significant byte first.
