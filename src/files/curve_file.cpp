@@ -14,7 +14,7 @@
 #include "bytes/compression.h"
 #include "bytes/obj_lines.h"
 #include "bytes/scanner.h"
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "document/rows.h"
 #include "dxf/dxf.h"
 #include "ground/system/memory.h"

@@ -6,7 +6,7 @@
 #include "bytes/chunked_output.h"
 #include "derived/convert_iso.h"
 #include "document/encode.h"
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "ground/numbers/rounding.h"
 #include "vdb_offset/error.h"
 

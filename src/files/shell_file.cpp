@@ -11,7 +11,7 @@
 #include "bytes/scanner.h"
 #include "derived/convert_shell.h"
 #include "derived/shell_writers.h"
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "document/rows.h"
 #include "vdb_offset/error.h"
 

@@ -33,7 +33,7 @@ struct Attributes {
   std::vector<std::array<double, 4>> colours;  ///< Of vertices: red, green, blue and alpha, 0 .. 1. May be empty.
   bool has_alpha = false;
   CornerValues<Vec2d> texture;
-  CornerValues<Vec3d> normals;    ///< In the order of MeshFile::normal_at; may hold NaNs. Facets' normals are none.
+  CornerValues<Vec3d> normals;    ///< In the order of the file's normals; may hold NaNs. Facets' normals are none.
   std::vector<std::string> lost;  ///< All that the file holds besides, in words; malformed attributes among it.
 };
 

@@ -19,7 +19,7 @@
 
 namespace vdb_offset::io {
 
-/// Those from ThreeMf on hold more than a mesh: see Document. Assimp stands for all that is read by that library; Step,
+/// Assimp stands for all that is read by that library; Step,
 /// Iges and Brep (of OpenCASCADE) are CAD models, and Vdb is OpenVDB's, a surface of whose grids is the mesh.
 enum class Format { Obj, Off, Ply, Stl, ThreeMf, Gltf, Glb, Vtp, Vtk, Vtu, Assimp, Step, Iges, Brep, Vdb };
 

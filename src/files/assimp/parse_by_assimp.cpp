@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "assimp/assimp_meshes.h"
 #include "bytes/open_module.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "ground/system/memory.h"
 
 namespace vdb_offset::io {

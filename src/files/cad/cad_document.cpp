@@ -14,7 +14,7 @@
 #include "cad/cad_surface.h"
 #include "cad/cad_worker.h"
 #include "document/document.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "ground/system/memory.h"
 #include "vdb_offset/error.h"
 

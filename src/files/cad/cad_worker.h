@@ -23,8 +23,8 @@ namespace vdb_offset::io {
 class CadWorker {
  public:
   /// Reads and tessellates the file's bytes, which are kept nowhere here. `format` is a name's ending, with or without
-  /// a point: step, stp, iges, igs, brep. `seconds` is how long each request may take, this one included; `most_memory`
-  /// how many bytes of addresses the worker may ask for, 0: any.
+  /// a point: step, stp, iges, igs, brep. `seconds` is how long all requests together may take, this one included;
+  /// `most_memory` how many bytes of addresses the worker may ask for, 0: any.
   CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadFineness& fineness,
             double seconds, std::uint64_t most_memory);
   ~CadWorker();

@@ -26,7 +26,7 @@ struct FormatRow {
   bool holds_corners = false;    ///< Corners of one vertex may have different ones.
 };
 
-/// The row of a format in the table of all (formats.cpp).
+/// The row of a format in the table of all (format_table.cpp).
 const FormatRow& row_of(Format format);
 
 }  // namespace vdb_offset::io

@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "gltf/gltf_document.h"
 #include "gltf/json.h"
 #include "gltf/mesh_builder.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bytes/append_number.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "gltf/accessors.h"
 #include "gltf/container.h"
 #include "gltf/split_vertices.h"

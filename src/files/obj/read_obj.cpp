@@ -12,7 +12,7 @@
 #include "bytes/line_records.h"
 #include "bytes/obj_lines.h"
 #include "bytes/scanner.h"
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "ground/system/memory.h"
 #include "obj/obj_document.h"
 #include "vdb_offset/error.h"

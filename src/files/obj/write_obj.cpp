@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "document/append_values.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 
 namespace vdb_offset::io {
 namespace {

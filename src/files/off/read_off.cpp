@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bytes/scanner.h"
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "ground/numbers/rounding.h"
 #include "ground/system/memory.h"
 #include "off/off_binary.h"

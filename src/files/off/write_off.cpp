@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "document/append_values.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "bytes/line_records.h"
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "ground/numbers/rounding.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"

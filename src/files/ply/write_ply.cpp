@@ -5,7 +5,7 @@
 #include <initializer_list>
 
 #include "document/append_values.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 
 namespace vdb_offset::io {
 namespace {

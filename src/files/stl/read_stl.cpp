@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "bytes/scanner.h"
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "ground/numbers/rounding.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"

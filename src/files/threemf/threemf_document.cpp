@@ -12,7 +12,7 @@
 #include "bytes/nearest_names.h"
 #include "bytes/scanner.h"
 #include "document/document.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "ground/system/memory.h"
 #include "threemf/package.h"
 #include "threemf/vertex_text.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bytes/append_number.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "ground/mesh/triangulate.h"
 #include "ground/system/memory.h"
 #include "threemf/model.h"

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "document/document.h"
-#include "document/documents.h"
-#include "document/mesh_readers.h"
+#include "document/format_readers.h"
+#include "document/require_format.h"
 #include "document/trial.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"

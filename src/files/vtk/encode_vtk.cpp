@@ -11,7 +11,7 @@
 
 #include "bytes/append_number.h"
 #include "bytes/vtk_xml.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {

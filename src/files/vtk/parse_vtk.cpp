@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bytes/open_module.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "ground/system/memory.h"
 #include "vtk/vtk_meshes.h"
 

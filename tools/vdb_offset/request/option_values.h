@@ -93,7 +93,7 @@ Orient parse_orient(const std::string& text);
 /// 'x=0', or another axis and number, or 'A,B,C,D' for A x + B y + C z = D.
 SymmetryPlane parse_plane(const std::string& text);
 
-/// 'obj', 'ply', 'stl' or 'off'.
+/// A format that is written, by its ending without a point.
 io::Format parse_format(const std::string& text);
 
 /// 'uv', 'color' and 'material', separated by commas, or 'none', of --transport.

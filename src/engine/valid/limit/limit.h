@@ -39,6 +39,7 @@ struct SurfaceOffset {
 /// 5. Settling (Settling): short vertices are put where there is room, if less is lost with what goes back for that.
 /// 6. Contracting (Contraction): what is short yet is put beside neighbours that are at the distance.
 /// 7. Easing (LetOut::ease()): vertices around pulled ones follow these, where thickness would change too fast.
+/// 8. Pulling back once more, should a face that was put back be judged otherwise than before.
 /// With `started_from`, patches that were moved in that offset and are faulty here start from there, and patches that
 /// could not be freed there are not tried again.
 ///

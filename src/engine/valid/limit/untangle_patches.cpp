@@ -147,7 +147,7 @@ void PatchUntangler::untangle(const Indices& chosen, const Untangler::Options& e
   ++state_.statistics.untanglings;
 }
 
-/// Drops patches that are too large, or hopeless (see limit_schedule.h). In the first pass none counts as hopeless:
+/// Drops patches that are too large, or hopeless (see schedule.h). In the first pass none counts as hopeless:
 /// what it leaves tells.
 void PatchUntangler::leave_out(const PatchSizes& sizes, double least_contrast) {
   const std::size_t most = state_.started_from ? std::min(sizes.most_vertices, kWarmStartVertices)

@@ -19,8 +19,8 @@
 
 #include "assimp/assimp_meshes.h"
 #include "document/document.h"
-#include "document/documents.h"
-#include "document/mesh_readers.h"
+#include "document/format_readers.h"
+#include "document/require_format.h"
 #include "document/trial.h"
 #include "vdb_offset/error.h"
 #include "vdb_offset/numbers.h"

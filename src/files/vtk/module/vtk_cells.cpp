@@ -15,7 +15,7 @@
 #include <span>
 #include <string>
 
-#include "document/mesh_readers.h"
+#include "document/require_format.h"
 #include "vdb_offset/error.h"
 
 namespace vdb_offset::io {

@@ -29,7 +29,7 @@ void parse_vdb(MeshFile& file, const VdbReading& how);  ///< .vdb; fills in `vox
 inline constexpr double kMetre = 1e6;  // micrometres
 std::optional<double> unit_of_3mf(const std::string& path);
 
-// New files of a content, which encode() calls; `with` has been fitted to the format (see fit_to_format()).
+// New files of a content, which encode() calls; its `with` has been fitted to the format (see fit_to_format()).
 Pieces to_obj(const SharedContent& content);
 Pieces to_off(const SharedContent& content);
 Pieces to_ply(const SharedContent& content);

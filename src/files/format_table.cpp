@@ -6,7 +6,7 @@
 
 #include "bytes/compression.h"
 #include "bytes/scanner.h"
-#include "document/documents.h"
+#include "document/format_readers.h"
 #include "document/format_table.h"
 
 namespace vdb_offset::io {
