@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::python {
 namespace {

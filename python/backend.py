@@ -18,7 +18,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
 def _version():
-    with open(os.path.join(ROOT, "include", "vdb_offset", "version.h"), encoding="utf-8") as header:
+    with open(os.path.join(ROOT, "include", "vdb_offset", "api.h"), encoding="utf-8") as header:
         return re.search(r'define VDB_OFFSET_VERSION "([^"]+)"', header.read()).group(1)
 
 

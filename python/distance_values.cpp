@@ -6,10 +6,10 @@
 #include <string>
 
 #include "keywords.h"
-#include "vdb_offset/curves.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::python {
 namespace {

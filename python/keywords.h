@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::python {
 

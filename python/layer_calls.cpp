@@ -13,7 +13,7 @@
 #include "keywords.h"
 #include "results.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "volume_arrays.h"
 
 namespace vdb_offset::python {

@@ -6,9 +6,9 @@
 #include "calls.h"
 #include "interruptible.h"
 #include "results.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/statistics.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
+#include "vdb_offset/result.h"
+#include "vdb_offset/run.h"
 
 /// The module vdb_offset._core, which vdb_offset/_calls.py makes functions with keywords of.
 namespace vdb_offset::python {

@@ -11,8 +11,8 @@
 #include "keywords.h"
 #include "results.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/tolerance.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::python {
 

@@ -18,7 +18,6 @@
 #include "distance_values.h"
 #include "keywords.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/numbers.h"
 #include "vdb_offset/run.h"

@@ -7,7 +7,6 @@
 
 #include "arrays.h"
 #include "source.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/offset.h"
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "vdb_offset/distance_field.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
+#include "vdb_offset/field.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::python {
 

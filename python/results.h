@@ -11,8 +11,8 @@
 #include "arrays.h"
 #include "option_values.h"
 #include "source.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/report.h"
+#include "vdb_offset/run.h"
 
 /// What calls return: dictionaries of arrays that own what they show.
 namespace vdb_offset::python {

@@ -10,8 +10,8 @@
 #include "interruptible.h"
 #include "keywords.h"
 #include "results.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/iso_surface.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shell.h"
 
 namespace vdb_offset::python {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "keywords.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::python {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "arrays.h"
-#include "vdb_offset/curves.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset::python {
 

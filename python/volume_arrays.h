@@ -2,7 +2,7 @@
 #pragma once
 
 #include "arrays.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset::python {
 

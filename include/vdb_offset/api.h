@@ -7,3 +7,16 @@
 #else
 #define VDB_OFFSET_API
 #endif
+
+// Of these headers; the build reads them, too.
+#define VDB_OFFSET_VERSION_MAJOR 0
+#define VDB_OFFSET_VERSION_MINOR 2
+#define VDB_OFFSET_VERSION_PATCH 0
+#define VDB_OFFSET_VERSION "0.2.0"
+
+namespace vdb_offset {
+
+/// The version of the library that is linked, "major.minor.patch".
+VDB_OFFSET_API const char* version();
+
+}  // namespace vdb_offset

@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/curves.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/layers.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 

@@ -84,7 +84,7 @@ struct VDB_OFFSET_API Metric {
 struct VertexVariables {
   std::span<const Vec3d> positions;  ///< x, y, z: world units.
   std::span<const Vec3d> normals;    ///< nx, ny, nz: unit length (see vertex_normals() in mesh_facts.h).
-  std::span<const Vec2d> texture;    ///< u, v (see io::vertex_texture() in io/attributes.h).
+  std::span<const Vec2d> texture;    ///< u, v (see io::vertex_texture() in io/mesh_file.h).
   double diagonal = 0;  ///< Diagonal of the bounding box of the vertices in use, which percentages refer to.
 };
 

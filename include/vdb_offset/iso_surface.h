@@ -8,12 +8,12 @@
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/numbers.h"
+#include "vdb_offset/options.h"
 #include "vdb_offset/polygons.h"
+#include "vdb_offset/result.h"
 #include "vdb_offset/run.h"
-#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
 

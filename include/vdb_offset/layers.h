@@ -73,7 +73,7 @@ class VDB_OFFSET_API SharedStacks {
 /// What cells have to fulfil to be valid.
 enum class CellRules : std::uint8_t {
   AnySolver,  ///< Positive volumes and Jacobians (see GrowthColumns).
-  OpenFoam,   ///< In addition, OpenFOAM's checkMesh must find no face of a cell oriented wrongly (volume_mesh.h).
+  OpenFoam,   ///< In addition, OpenFOAM's checkMesh must find no face of a cell oriented wrongly (cells.h).
 };
 
 /// What growing layers found and did.

@@ -3,18 +3,39 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/exact_surface.h"
-#include "vdb_offset/grid.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset {
+
+/// How far a field reaches on each side of the surface, world units, both > 0.
+struct Reach {
+  double inside, outside;
+};
+
+/// How fine the grid is. At most one of the two may be set; with neither the size is chosen (see plan_grid).
+struct GridOptions {
+  std::optional<double> voxel_size;           ///< World units, > 0.
+  std::optional<double> voxels_per_distance;  ///< > 0; the voxel size is |distance| / this.
+};
+
+/// What a run will need, known before it starts.
+struct GridPlan {
+  double voxel_size = 0;                              ///< World units.
+  std::string reason;                                 ///< Why this size, in words.
+  double band = 0;                                    ///< Width on each side that is rasterised exactly.
+  Reach reach{};                                      ///< Width on each side that the field covers.
+  std::size_t leaf_nodes = 0, voxels = 0, bytes = 0;  ///< Estimates; bytes is the peak of the whole run.
+  double seconds = 0;                                 ///< Rough estimate for `threads` threads.
+};
 
 enum class Solver {
   Closest,  ///< Hands closest points on from voxel to voxel, each walking on from there over the mesh: exact.

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/check.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/iso_surface.h"
-#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shell.h"
 

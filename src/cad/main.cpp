@@ -13,7 +13,7 @@
 #include <new>
 
 #include "messages/message_channel.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
 #include "worker/guard.h"
 #include "worker/requests.h"
 

@@ -12,8 +12,8 @@
 #include "cad/cad_surface.h"
 #include "ground/mesh/triangulate.h"
 #include "ground/system/assert.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -19,7 +19,7 @@
 #include "dxf/dxf.h"
 #include "ground/system/memory.h"
 #include "svg/svg.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

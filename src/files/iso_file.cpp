@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/derived_file.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "document/encode.h"
 #include "document/require_format.h"
 #include "ground/numbers/rounding.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 

@@ -18,8 +18,8 @@
 #include "document/new_normals.h"
 #include "document/require_format.h"
 #include "ground/numbers/rounding.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/page_file.h"
+#include "vdb_offset/io/view_file.h"
 
 #include <fmt/format.h>
 

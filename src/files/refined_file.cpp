@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/refined_file.h"
+#include "vdb_offset/io/derived_file.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "document/convert.h"
 #include "document/rows.h"
 #include "ground/system/memory.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/io/derived_file.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "derived/shell_writers.h"
 #include "document/require_format.h"
 #include "document/rows.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

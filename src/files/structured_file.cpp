@@ -4,9 +4,9 @@
 #include "bytes/append_number.h"
 #include "bytes/chunked_output.h"
 #include "bytes/scanner.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 #include "volume/volume_writers.h"
 
 namespace vdb_offset::io {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "document/binary_number.h"
 #include "document/document.h"
 #include "ground/system/parallel.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

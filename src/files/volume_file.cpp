@@ -9,8 +9,8 @@
 
 #include "bytes/scanner.h"
 #include "ground/system/parallel.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 #include "volume/volume_writers.h"
 
 namespace vdb_offset::io {

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "cad/cad_files.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using Catch::Contains;

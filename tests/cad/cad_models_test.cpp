@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cad/cad_files.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 
 using namespace vdb_offset;
 using io::CadEdge;

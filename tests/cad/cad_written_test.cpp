@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "cad/cad_files.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/cad_file.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using Made = CadFileFacts::Made;

@@ -6,8 +6,8 @@
 #include "bytes/append_number.h"
 #include "bytes/chunked_output.h"
 #include "support/folder.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

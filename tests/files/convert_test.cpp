@@ -9,7 +9,6 @@
 #include "support/folder.h"
 #include "support/random_scenes.h"
 #include "support/solids.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/offset.h"
 

@@ -9,9 +9,9 @@
 #include "support/curve_oracles.h"
 #include "support/folder.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

@@ -10,8 +10,8 @@
 
 #include "support/dxf_text.h"
 #include "support/folder.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

@@ -10,7 +10,6 @@
 
 #include "support/folder.h"
 #include "support/gltf_model.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
 
 using namespace vdb_offset;

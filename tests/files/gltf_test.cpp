@@ -20,10 +20,9 @@
 #include "ground/numbers/rounding.h"
 #include "support/folder.h"
 #include "support/gltf_model.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using test::GltfModel;

@@ -5,11 +5,9 @@
 
 #include "support/folder.h"
 #include "support/gltf_model.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shell.h"
 
 using namespace vdb_offset;

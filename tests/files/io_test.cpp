@@ -11,9 +11,9 @@
 #include "support/bytes.h"
 #include "support/edits.h"
 #include "support/folder.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -12,9 +12,9 @@
 #include "support/folder.h"
 #include "support/oracles.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/iso_surface.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 #include "vdb_offset/shell.h"
 

@@ -6,11 +6,10 @@
 
 #include "products/cells/make_cells.h"
 #include "support/volume_meshes.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 #include "volume/msh_entities.h"
 

@@ -11,11 +11,10 @@
 #include "support/bytes.h"
 #include "support/edits.h"
 #include "support/folder.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/curve_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using io::Format;

@@ -8,7 +8,7 @@
 #include "bytes/compression.h"
 #include "page/view_mesh.h"
 #include "support/folder.h"
-#include "vdb_offset/io/page_file.h"
+#include "vdb_offset/io/view_file.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

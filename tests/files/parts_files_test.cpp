@@ -10,9 +10,9 @@
 #include "support/folder.h"
 #include "support/oracles.h"
 #include "valid/faults/clearance.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/refined_file.h"
 #include "document/rows.h"
+#include "vdb_offset/io/derived_file.h"
 
 #include <fmt/format.h>
 
@@ -13,8 +13,8 @@
 #include "support/edits.h"
 #include "support/folder.h"
 #include "support/splitter.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using io::Format;

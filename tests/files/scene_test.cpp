@@ -9,8 +9,8 @@
 #include "space/surface/surface.h"
 #include "support/oracles.h"
 #include "support/places.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

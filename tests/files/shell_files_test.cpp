@@ -12,9 +12,9 @@
 #include "support/shells.h"
 #include "valid/faults/rim_crossings.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/iso_surface.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 #include "vdb_offset/shell.h"
 

@@ -7,7 +7,7 @@
 #include "support/folder.h"
 #include "support/rooms.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/shapes.h"

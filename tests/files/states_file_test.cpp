@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/view_file.h"
 
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include "support/folder.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 

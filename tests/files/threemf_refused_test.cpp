@@ -7,8 +7,8 @@
 #include "ground/system/memory.h"
 #include "support/folder.h"
 #include "support/threemf_packages.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using io::Format;

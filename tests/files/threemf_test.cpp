@@ -17,11 +17,9 @@
 #include "support/splitter.h"
 #include "support/threemf_packages.h"
 #include "threemf/zip_archive.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/refined_file.h"
-#include "vdb_offset/io/shell_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using io::Format;

@@ -29,7 +29,7 @@
 #include "products/volume/cell_quality.h"
 #include "support/folder.h"
 #include "support/volume_meshes.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

@@ -36,9 +36,8 @@
 #include "bytes/chunked_output.h"
 #include "document/convert.h"
 #include "ground/numbers/rounding.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

@@ -14,9 +14,9 @@
 #include "fuzz/promise.h"
 #include "ground/numbers/rounding.h"
 #include "svg/svg.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

@@ -15,9 +15,8 @@
 #include "support/dxf_text.h"
 #include "support/gltf_model.h"
 #include "support/threemf_packages.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 namespace fs = std::filesystem;

@@ -17,10 +17,9 @@
 #include "ground/numbers/rounding.h"
 #include "ply/ply_header.h"
 #include "support/splitter.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/refined_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

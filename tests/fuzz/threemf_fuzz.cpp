@@ -15,9 +15,8 @@
 #include "document/convert.h"
 #include "fuzz/promise.h"
 #include "support/threemf_packages.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

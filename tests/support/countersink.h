@@ -11,8 +11,8 @@
 #include "support/folder.h"
 #include "support/oracles.h"
 #include "valid/faults/clearance.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 namespace vdb_offset::test::countersink {

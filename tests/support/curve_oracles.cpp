@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/curve_oracles.h"
-#include "vdb_offset/curves.h"
+#include "vdb_offset/polygons.h"
 
 #include <gmpxx.h>
 

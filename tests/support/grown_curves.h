@@ -10,10 +10,10 @@
 #include "products/volume/cell_quality.h"
 #include "support/curve_oracles.h"
 #include "support/folder.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::test::grown_curves {
 

@@ -8,11 +8,10 @@
 
 #include "products/cells/number_cells.h"
 #include "products/volume/cell_quality.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/result.h"
 #include "vdb_offset/shapes.h"
-#include "vdb_offset/statistics.h"
 
 namespace vdb_offset::test {
 namespace {

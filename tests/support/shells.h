@@ -13,8 +13,8 @@
 #include "support/random_scenes.h"
 #include "valid/faults/rim_crossings.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/iso_surface.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 #include "vdb_offset/shell.h"
 

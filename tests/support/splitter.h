@@ -9,7 +9,7 @@
 
 #include "ground/numbers/rounding.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/refinement.h"
+#include "vdb_offset/polygons.h"
 
 /// Splits edges at their midpoints, and triangles at a point inside. A face around a split edge becomes triangles
 /// around the midpoint of its first one.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/folder.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset::test {
 

@@ -23,11 +23,11 @@
 #include "space/field/rasterise.h"
 #include "space/field/sweep.h"
 #include "space/query/closest_query.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/openmesh.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::bench {

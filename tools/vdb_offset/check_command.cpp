@@ -22,17 +22,16 @@
 #include "source.h"
 #include "summary/summary.h"
 #include "terminal.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/curves.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/view_file.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/polygons.h"
 #include "vdb_offset/report.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

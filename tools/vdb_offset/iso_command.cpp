@@ -9,11 +9,11 @@
 
 #include "run_files.h"
 #include "summary/summary.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/field.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/iso_surface.h"
-#include "vdb_offset/level_set.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

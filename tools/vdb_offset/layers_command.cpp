@@ -10,14 +10,14 @@
 #include "page/run_pages.h"
 #include "run_files.h"
 #include "summary/summary.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/view_file.h"
 #include "vdb_offset/io/volume_file.h"
-#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -21,8 +21,8 @@
 #include "run_files.h"
 #include "source.h"
 #include "terminal.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <new>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

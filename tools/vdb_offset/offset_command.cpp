@@ -15,12 +15,11 @@
 #include "messages.h"
 #include "summary/summary.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/tolerance.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -9,15 +9,14 @@
 #include "distances/part_distances.h"
 #include "messages.h"
 #include "page/run_pages.h"
-#include "vdb_offset/distance_field.h"
+#include "vdb_offset/api.h"
+#include "vdb_offset/field.h"
 #include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/io/curve_file.h"
-#include "vdb_offset/io/refined_file.h"
-#include "vdb_offset/io/shell_file.h"
-#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/derived_file.h"
+#include "vdb_offset/io/view_file.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
-#include "vdb_offset/version.h"
 
 namespace vdb_offset::tool {
 namespace {

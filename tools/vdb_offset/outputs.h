@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "job.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/iso_surface.h"
-#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/shell.h"

@@ -11,11 +11,11 @@
 #include "job.h"
 #include "outputs.h"
 #include "request/option_values.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/cad_file.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -186,7 +186,7 @@ Precision precision_of_refined(const Job& job) {
   if (!path.empty()) all_digits.format = format_of(path, job.request);
   if (!job.source.file) return path.empty() ? Precision{} : io::target_of(path, all_digits).precision;
   const io::MeshFile& file = *job.source.file;
-  // A document whose faces are split becomes a file that keeps all digits (io/refined_file.h).
+  // A document whose faces are split becomes a file that keeps all digits (io/derived_file.h).
   const bool is_double = !io::has_rows(file) || file.precision.kind == Precision::Kind::Double;
   if (is_double && !path.empty()) return io::target_of(path, file, all_digits, io::Faces::Others).precision;
   return io::has_rows(file) ? file.precision : Precision{};

@@ -12,7 +12,6 @@
 #include "messages.h"
 #include "outputs.h"
 #include "request/option_values.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/output_files.h"

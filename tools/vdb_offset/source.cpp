@@ -10,8 +10,7 @@
 
 #include "messages.h"
 #include "request/units.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/refined_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {

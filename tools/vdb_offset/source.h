@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "request/request.h"
-#include "vdb_offset/curves.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/refinement.h"
+#include "vdb_offset/polygons.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {

@@ -10,10 +10,10 @@
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 

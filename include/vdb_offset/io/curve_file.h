@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/curves.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset::io {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "vdb_offset/api.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset::io {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "hold/hold_back.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "write/face_distances.h"
 
 namespace vdb_offset::cad {

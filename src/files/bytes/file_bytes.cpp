@@ -12,7 +12,7 @@
 
 #include "bytes/compression.h"
 #include "ground/system/memory.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -9,8 +9,8 @@
 #include <new>
 #include <system_error>
 
-#include "vdb_offset/error.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "bytes/line_records.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

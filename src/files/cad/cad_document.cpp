@@ -16,7 +16,7 @@
 #include "document/document.h"
 #include "document/format_readers.h"
 #include "ground/system/memory.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "cad/cad_worker.h"
 #include "messages/cad_mesh.h"
-#include "vdb_offset/exact_surface.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset::io {
 

@@ -18,8 +18,8 @@
 
 #include "bytes/open_module.h"
 #include "cad/worker_process.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "cad/cad_worker.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 

@@ -3,14 +3,15 @@
 
 #include "bytes/chunked_output.h"
 #include "ground/numbers/rounding.h"
-#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/shell.h"
 
 namespace vdb_offset::io {
 
-/// An iso-surface with the attributes that it takes from the source (see iso_file.h); normals are gradients of phi.
+/// An iso-surface with the attributes that it takes from the source (see io/derived_file.h); normals are gradients of
+/// phi.
 Pieces convert(const MeshFile& source, Format target, const IsoResult& iso, const Transported& transported,
                const Rounding& precision, WriteResult& result);
 

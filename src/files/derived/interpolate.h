@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bytes/scanner.h"
-#include "vdb_offset/refinement.h"
+#include "vdb_offset/polygons.h"
 
 // Values at added vertices, of those at the vertices of their origin: `of[k]` belongs to origin.vertex[k], and does not
 // count where the share is 0.

@@ -9,7 +9,7 @@
 #include "bytes/chunked_output.h"
 #include "derived/refined_corners.h"
 #include "vdb_offset/io/mesh_file.h"
-#include "vdb_offset/refinement.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset::io {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/refinement.h"
 
 namespace vdb_offset::io {
 

@@ -3,7 +3,7 @@
 
 #include "bytes/append_number.h"
 #include "bytes/chunked_output.h"
-#include "vdb_offset/io/refined_file.h"
+#include "vdb_offset/io/derived_file.h"
 
 namespace vdb_offset::io {
 namespace {

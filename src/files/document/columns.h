@@ -8,7 +8,7 @@
 
 #include "bytes/scanner.h"
 #include "document/rows.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 

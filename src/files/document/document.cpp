@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 

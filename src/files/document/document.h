@@ -12,7 +12,6 @@
 #include "bytes/chunked_output.h"
 #include "document/new_normals.h"
 #include "ground/numbers/rounding.h"
-#include "vdb_offset/io/attributes.h"
 #include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {

@@ -6,7 +6,7 @@
 
 #include "bytes/chunked_output.h"
 #include "ground/numbers/rounding.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 

@@ -13,7 +13,7 @@
 #include "document/rows.h"
 #include "ground/numbers/rounding.h"
 #include "ground/system/parallel.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -14,7 +14,7 @@
 #include "bytes/line_records.h"
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

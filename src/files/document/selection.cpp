@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@
 #include "bytes/scanner.h"
 #include "document/document.h"
 #include "document/face_shapes.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -13,7 +13,7 @@
 #include <fstream>
 #include <new>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 
 #include <fmt/format.h>
 

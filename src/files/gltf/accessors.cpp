@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io::gltf {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "bytes/append_number.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io::gltf {
 namespace {

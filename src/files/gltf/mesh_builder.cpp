@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io::gltf {
 namespace {

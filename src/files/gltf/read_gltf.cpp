@@ -14,7 +14,7 @@
 #include "gltf/mesh_builder.h"
 #include "gltf/scene.h"
 #include "gltf/uri.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace gltf {

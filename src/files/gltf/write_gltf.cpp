@@ -13,7 +13,7 @@
 #include "gltf/container.h"
 #include "gltf/split_vertices.h"
 #include "gltf/uri.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace gltf {

@@ -15,7 +15,7 @@
 #include "document/require_format.h"
 #include "ground/system/memory.h"
 #include "obj/obj_document.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -9,7 +9,7 @@
 #include "ground/system/memory.h"
 #include "off/off_binary.h"
 #include "off/off_document.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

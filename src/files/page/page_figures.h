@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/io/page_file.h"
+#include "vdb_offset/io/view_file.h"
 
 namespace vdb_offset::io {
 

@@ -11,7 +11,7 @@
 #include "bytes/nearest_names.h"
 #include "document/columns.h"
 #include "ply/ply_header.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

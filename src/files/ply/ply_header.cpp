@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io::ply {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "bytes/append_number.h"
 #include "bytes/line_records.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io::ply {
 namespace {

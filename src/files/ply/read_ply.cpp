@@ -13,7 +13,7 @@
 #include "ground/system/parallel.h"
 #include "ply/ply_document.h"
 #include "ply/ply_header.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace ply {

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "bytes/scanner.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/polygons.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::scene {
 

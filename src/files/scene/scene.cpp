@@ -11,8 +11,8 @@
 #include "bytes/scanner.h"
 #include "ground/system/memory.h"
 #include "scene/json_object.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::scene {
 namespace {

@@ -13,7 +13,7 @@
 #include "ground/system/parallel.h"
 #include "stl/stl_document.h"
 #include "stl/stl_layout.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "bytes/append_number.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 

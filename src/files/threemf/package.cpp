@@ -8,7 +8,7 @@
 
 #include "bytes/scanner.h"
 #include "threemf/slicer_names.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "bytes/scanner.h"
 #include "threemf/xml_elements.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

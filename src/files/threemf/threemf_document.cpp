@@ -16,7 +16,7 @@
 #include "ground/system/memory.h"
 #include "threemf/package.h"
 #include "threemf/vertex_text.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

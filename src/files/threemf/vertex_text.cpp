@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bytes/append_number.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

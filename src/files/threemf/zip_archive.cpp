@@ -11,7 +11,6 @@
 
 #include "bytes/scanner.h"
 #include "ground/system/memory.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::io {

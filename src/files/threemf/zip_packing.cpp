@@ -11,7 +11,7 @@
 #include "bytes/append_number.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

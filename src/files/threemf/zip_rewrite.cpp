@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "threemf/zip_archive.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

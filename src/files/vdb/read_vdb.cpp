@@ -25,7 +25,7 @@
 #include "document/trial.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "products/volume/foam_measures.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset::io {
 

@@ -9,8 +9,8 @@
 #include "bytes/append_number.h"
 #include "bytes/chunked_output.h"
 #include "products/volume/volume_faces.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 #include "volume/volume_writers.h"
 
 // https://doc.cfd.direct/openfoam/user-guide/mesh-description: faces between cells come first. Those of each cell

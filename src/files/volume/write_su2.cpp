@@ -5,7 +5,7 @@
 
 #include "bytes/append_number.h"
 #include "bytes/chunked_output.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "volume/volume_writers.h"
 
 // https://su2code.github.io/docs_v7/Mesh-File/: types of elements are VTK's numbers.

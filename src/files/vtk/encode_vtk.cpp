@@ -12,7 +12,7 @@
 #include "bytes/append_number.h"
 #include "bytes/vtk_xml.h"
 #include "document/format_readers.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/polygons.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

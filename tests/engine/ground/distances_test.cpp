@@ -15,7 +15,7 @@
 #include "support/folder.h"
 #include "support/oracles.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -9,11 +9,11 @@
 #include "products/iso/mend.h"
 #include "space/surface/surface.h"
 #include "support/oracles.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/layers.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

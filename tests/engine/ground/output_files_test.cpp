@@ -13,8 +13,8 @@
 
 #include "ground/system/temporary.h"
 #include "support/folder.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace fs = std::filesystem;
 using namespace vdb_offset;

@@ -10,7 +10,6 @@
 
 #include "space/sheets/sheet_sides.h"
 #include "support/oracles.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/offset.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/check.h"
+#include "vdb_offset/offset.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "support/oracles.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

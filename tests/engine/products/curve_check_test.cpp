@@ -9,7 +9,7 @@
 #include "space/curve/curve_line.h"
 #include "support/curve_oracles.h"
 #include "vdb_offset/curve_offset.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/exact_surface.h"
+#include "vdb_offset/polygons.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
 
 namespace vdb_offset {

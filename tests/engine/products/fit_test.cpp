@@ -9,9 +9,8 @@
 #include "support/oracles.h"
 #include "support/solids.h"
 #include "valid/faults/clearance.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

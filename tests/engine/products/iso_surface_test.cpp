@@ -15,7 +15,7 @@
 #include "support/folder.h"
 #include "support/oracles.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

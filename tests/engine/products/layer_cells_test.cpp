@@ -14,9 +14,9 @@
 #include "products/volume/cell_quality.h"
 #include "products/volume/prism_quality_columns.h"
 #include "support/oracles.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/report.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

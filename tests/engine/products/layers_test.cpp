@@ -13,8 +13,8 @@
 #include "support/oracles.h"
 #include "support/random_scenes.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

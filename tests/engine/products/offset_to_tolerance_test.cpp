@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/tolerance.h"
+#include "vdb_offset/offset.h"
 
 #include <algorithm>
 #include <array>
@@ -17,8 +17,7 @@
 #include "support/oracles.h"
 #include "support/random_scenes.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "vdb_offset/error.h"
 #include "vdb_offset/openmesh.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "vdb_offset/check.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/polygons.h"

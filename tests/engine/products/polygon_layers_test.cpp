@@ -10,7 +10,7 @@
 #include "products/volume/foam_measures.h"
 #include "products/volume/polygon_prism.h"
 #include "support/volume_meshes.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

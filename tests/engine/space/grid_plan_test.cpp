@@ -6,7 +6,7 @@
 
 #include "space/field/rasterise.h"
 #include "space/field/sweep.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -4,7 +4,6 @@
 #include <random>
 
 #include "space/surface/surface.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/shapes.h"

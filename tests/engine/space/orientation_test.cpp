@@ -5,7 +5,6 @@
 #include <catch2/catch.hpp>
 
 #include "support/oracles.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "ground/numbers/rounding.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/report.h"

@@ -9,8 +9,8 @@
 
 #include "ground/mesh/triangulate.h"
 #include "support/oracles.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/openmesh.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -9,9 +9,9 @@
 #include "support/oracles.h"
 #include "support/solids.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/layers.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 #include "vdb_offset/shell.h"
 

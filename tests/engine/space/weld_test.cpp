@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "space/surface/surface.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 

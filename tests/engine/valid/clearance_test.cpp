@@ -5,7 +5,6 @@
 
 #include "support/oracles.h"
 #include "valid/faults/clearance.h"
-#include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "vdb_offset/check.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 

@@ -15,7 +15,7 @@
 #include "valid/faults/fault_finder.h"
 #include "valid/faults/triangle_crossings.h"
 #include "valid/limit/limit_state.h"
-#include "vdb_offset/check.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

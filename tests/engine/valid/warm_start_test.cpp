@@ -3,7 +3,7 @@
 
 #include "support/oracles.h"
 #include "valid/limit/warm_start.h"
-#include "vdb_offset/check.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;

@@ -23,7 +23,7 @@
 #include "batch/table.h"
 #include "job.h"
 #include "messages.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "outputs.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "batch/fingerprint.h"
 #include "job.h"
+#include "vdb_offset/api.h"
 #include "vdb_offset/output_files.h"
-#include "vdb_offset/version.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -11,9 +11,9 @@
 #include <cstring>
 
 #include "messages.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/numbers.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

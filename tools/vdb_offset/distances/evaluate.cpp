@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "request/option_values.h"
-#include "vdb_offset/curves.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/polygons.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "distances/evaluate.h"
 #include "request/option_values.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

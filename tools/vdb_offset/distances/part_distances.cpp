@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "distances/evaluate.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/mesh_facts.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

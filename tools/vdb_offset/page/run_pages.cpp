@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/page_file.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/io/view_file.h"
 #include "vdb_offset/report.h"
 
 namespace vdb_offset::tool {

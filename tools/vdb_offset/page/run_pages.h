@@ -5,10 +5,10 @@
 #include <string>
 
 #include "outputs.h"
-#include "vdb_offset/check.h"
-#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/cells.h"
+#include "vdb_offset/io/view_file.h"
 #include "vdb_offset/layers.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/offset.h"
 
 namespace vdb_offset::tool {
 

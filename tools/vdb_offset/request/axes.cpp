@@ -7,9 +7,9 @@
 
 #include "request/option_values.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/polygons.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -15,9 +15,9 @@
 #include "request/option_values.h"
 #include "request/request.h"
 #include "request/units.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

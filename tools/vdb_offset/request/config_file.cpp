@@ -12,7 +12,7 @@
 #include "request/option_values.h"
 #include "request/request.h"
 #include "request/toml_parser.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

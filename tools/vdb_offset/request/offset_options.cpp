@@ -10,8 +10,8 @@
 #include "request/option_rules.h"
 #include "request/option_values.h"
 #include "request/request.h"
+#include "vdb_offset/api.h"
 #include "vdb_offset/run.h"
-#include "vdb_offset/version.h"
 
 namespace vdb_offset::tool {
 namespace {

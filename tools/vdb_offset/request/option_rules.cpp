@@ -11,8 +11,7 @@
 #include "request/option_values.h"
 #include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/io/curve_file.h"
-#include "vdb_offset/io/page_file.h"
-#include "vdb_offset/io/states_file.h"
+#include "vdb_offset/io/view_file.h"
 #include "vdb_offset/io/volume_file.h"
 
 namespace vdb_offset::tool {

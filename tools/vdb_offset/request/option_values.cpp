@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
+#include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/numbers.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {

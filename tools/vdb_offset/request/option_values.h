@@ -9,9 +9,9 @@
 
 #include "request/request.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/derived_file.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/polygons.h"
-#include "vdb_offset/tolerance.h"
 
 // What the texts of single options say. Each throws UsageError, with the option and what it takes, for another text.
 

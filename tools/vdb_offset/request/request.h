@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
-#include "vdb_offset/io/attributes.h"
-#include "vdb_offset/io/iso_file.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/options.h"
 #include "vdb_offset/output_files.h"
-#include "vdb_offset/tolerance.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 

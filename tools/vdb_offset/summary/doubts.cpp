@@ -10,7 +10,7 @@
 
 #include "messages.h"
 #include "summary/summary.h"
-#include "vdb_offset/curves.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset::tool {
 namespace {

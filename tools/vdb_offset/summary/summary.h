@@ -9,8 +9,8 @@
 
 #include "job.h"
 #include "outputs.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/iso_surface.h"
-#include "vdb_offset/layer_cells.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/shell.h"
 

@@ -12,7 +12,7 @@
 #include "ground/numbers/box_tree.h"
 #include "ground/system/parallel.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -14,7 +14,7 @@
 #include <numbers>
 
 #include "ground/system/parallel.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

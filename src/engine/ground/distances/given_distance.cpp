@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "vdb_offset/distances.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/numbers.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

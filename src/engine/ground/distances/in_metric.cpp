@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ground/system/parallel.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

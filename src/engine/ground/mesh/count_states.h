@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

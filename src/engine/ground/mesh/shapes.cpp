@@ -11,7 +11,7 @@
 #include <random>
 
 #include "ground/system/memory.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::shapes {
 namespace {

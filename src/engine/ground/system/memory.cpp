@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "ground/system/temporary.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

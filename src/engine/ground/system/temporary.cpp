@@ -17,7 +17,7 @@
 #include <string_view>
 #include <utility>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

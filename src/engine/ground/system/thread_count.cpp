@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

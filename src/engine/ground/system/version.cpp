@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
 
 namespace vdb_offset {
 

@@ -8,7 +8,7 @@
 
 #include "space/surface/border_planes.h"
 #include "space/surface/surface.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

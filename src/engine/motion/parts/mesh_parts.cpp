@@ -9,7 +9,7 @@
 #include "ground/distances/mean_distances.h"
 #include "ground/mesh/triangulate.h"
 #include "space/surface/weld.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

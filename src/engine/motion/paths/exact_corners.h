@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "space/surface/surface.h"
-#include "vdb_offset/exact_surface.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {

@@ -18,7 +18,7 @@
 #include "space/query/obstacles.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/options.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

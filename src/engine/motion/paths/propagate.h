@@ -9,8 +9,8 @@
 #include "space/field/direction_field.h"
 #include "space/query/obstacles.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/result.h"
 #include "vdb_offset/run.h"
-#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
 

@@ -7,7 +7,7 @@
 #include "space/curve/curve_query.h"
 #include "space/query/closest_query.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>

@@ -2,7 +2,7 @@
 #include "products/cells/make_cells.h"
 
 #include "ground/numbers/disjoint_sets.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 
 #include <tbb/parallel_invoke.h>
 

@@ -3,11 +3,11 @@
 
 #include "products/cells/measure_cells.h"
 #include "products/cells/number_cells.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset {
 
-/// Makes cells that have been numbered and measured (see layer_cells.h). \pre `cells` are those of `layers`, and
+/// Makes cells that have been numbered and measured (see cells.h). \pre `cells` are those of `layers`, and
 /// `quality` is that of `cells`. \throw InvalidInput as require_names()
 VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const WallNames& names,
                       LayerQuality quality);

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "products/cells/number_cells.h"
-#include "vdb_offset/layer_cells.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset {
 

@@ -19,7 +19,7 @@
 #include "ground/system/parallel.h"
 #include "products/layers/column_cells.h"
 #include "space/surface/weld.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

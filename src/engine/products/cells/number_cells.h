@@ -7,9 +7,8 @@
 
 #include "products/layers/layer_points.h"
 #include "space/surface/weld.h"
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 #include "vdb_offset/layers.h"
-#include "vdb_offset/volume_mesh.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/layer_cells.h"
+#include "vdb_offset/cells.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 #include "ground/system/parallel.h"
 #include "products/cells/number_cells.h"
 #include "products/volume/cell_quality.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

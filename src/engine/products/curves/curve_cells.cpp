@@ -8,7 +8,7 @@
 #include "ground/system/assert.h"
 #include "products/volume/cell_quality.h"
 #include "space/curve/ribbon.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -15,7 +15,7 @@
 #include "products/curves/curve_faults.h"
 #include "products/curves/segment_error.h"
 #include "space/curve/curve_line.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -15,7 +15,7 @@
 #include "products/curves/prepared_curves.h"
 #include "products/curves/segment_error.h"
 #include "products/offset/moved_input.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

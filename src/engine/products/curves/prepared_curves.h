@@ -13,11 +13,10 @@
 #include "space/curve/curve_query.h"
 #include "space/field/field_grids.h"
 #include "space/surface/surface.h"
-#include "vdb_offset/curves.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/options.h"
+#include "vdb_offset/polygons.h"
 #include "vdb_offset/result.h"
-#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "products/curves/curve_faults.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

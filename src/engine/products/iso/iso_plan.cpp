@@ -10,7 +10,7 @@
 #include "space/field/count_leaf_nodes.h"
 #include "space/field/grid_plan.h"
 #include "space/surface/surface.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

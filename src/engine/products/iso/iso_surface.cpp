@@ -26,7 +26,7 @@
 #include "products/iso/solid_boundary.h"
 #include "products/iso/specks.h"
 #include "valid/faults/face_error.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

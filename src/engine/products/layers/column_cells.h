@@ -9,7 +9,7 @@
 
 #include "ground/system/assert.h"
 #include "products/layers/layer_points.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/check.h"
+#include "vdb_offset/offset.h"
 
 #include <tbb/task_arena.h>
 
@@ -23,7 +23,7 @@
 #include "valid/faults/obstacle_facts.h"
 #include "valid/faults/triangle_crossings.h"
 #include "valid/proof/certified_faces.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -3,7 +3,6 @@
 
 #include "products/offset/prepared_mesh.h"
 #include "vdb_offset/result.h"
-#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
 

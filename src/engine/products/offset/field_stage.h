@@ -12,7 +12,7 @@
 #include "space/field/field_grids.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/options.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 /// The stages before paths that meshes and curves share: the distance field of a surface, which is a ribbon for curves,
 /// its directions, and the options of the march.

@@ -16,7 +16,7 @@
 #include "products/offset/fit_parts.h"
 #include "space/field/run_bytes.h"
 #include "valid/faults/clearance.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

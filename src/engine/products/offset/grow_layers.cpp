@@ -15,8 +15,8 @@
 #include "valid/faults/face_error.h"
 #include "valid/faults/fault_finder.h"
 #include "valid/limit/limit.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/layers.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -11,7 +11,7 @@
 #include "products/offset/moved_input.h"
 #include "products/offset/prepared_mesh.h"
 #include "space/field/direction_field.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -15,7 +15,7 @@
 #include "products/offset/moved_input.h"
 #include "products/offset/vertex_targets.h"
 #include "space/field/grid_plan.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

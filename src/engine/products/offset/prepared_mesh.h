@@ -21,7 +21,7 @@
 #include "valid/faults/triangle_crossings.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/options.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vdb_offset/numbers.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

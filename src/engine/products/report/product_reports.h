@@ -3,8 +3,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "vdb_offset/result.h"
 #include "vdb_offset/shell.h"
-#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
 

@@ -8,7 +8,7 @@
 
 #include "ground/system/memory.h"
 #include "products/report/product_reports.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/api.h"
 
 namespace vdb_offset {
 namespace {

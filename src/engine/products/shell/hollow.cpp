@@ -9,7 +9,7 @@
 #include "products/shell/shell_facts.h"
 #include "space/surface/surface.h"
 #include "valid/faults/triangle_crossings.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

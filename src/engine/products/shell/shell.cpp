@@ -15,7 +15,7 @@
 #include "ground/system/thread_count.h"
 #include "products/shell/junction_shell.h"
 #include "products/shell/shell_facts.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

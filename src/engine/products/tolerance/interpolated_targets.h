@@ -12,7 +12,7 @@
 #include "space/surface/border_planes.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/options.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/tolerance.h"
+#include "vdb_offset/offset.h"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@
 #include "products/tolerance/refiner.h"
 #include "valid/faults/triangle_crossings.h"
 #include "valid/proof/certified_faces.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

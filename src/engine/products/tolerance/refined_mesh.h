@@ -14,7 +14,7 @@
 #include "products/tolerance/refined_triangles.h"
 #include "products/tolerance/refiner.h"
 #include "vdb_offset/options.h"
-#include "vdb_offset/refinement.h"
+#include "vdb_offset/polygons.h"
 #include "vdb_offset/result.h"
 
 namespace vdb_offset {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "space/surface/surface.h"
-#include "vdb_offset/refinement.h"
+#include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "products/volume/prism_quality.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset {
 

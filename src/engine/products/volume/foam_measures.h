@@ -6,7 +6,7 @@
 #include <span>
 
 #include "products/volume/volume_faces.h"
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 /// OpenFOAM's own measures of a mesh, as its checkMesh takes them (primitiveMesh: FaceCentresAndAreas,
 /// CellCentresAndVols, Check and Tools), and by which it refuses meshes or warns of them.

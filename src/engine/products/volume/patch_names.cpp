@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 #include <algorithm>
 #include <set>

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset {
 

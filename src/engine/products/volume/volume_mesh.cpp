@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/volume_mesh.h"
+#include "vdb_offset/cells.h"
 
 namespace vdb_offset {
 

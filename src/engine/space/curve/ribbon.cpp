@@ -9,7 +9,7 @@
 
 #include "ground/numbers/box_tree.h"
 #include "space/surface/surface.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "vdb_offset/curves.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "space/surface/surface.h"
-#include "vdb_offset/grid.h"
+#include "vdb_offset/options.h"
 
 namespace vdb_offset {
 

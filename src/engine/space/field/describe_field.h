@@ -2,7 +2,7 @@
 #pragma once
 
 #include "space/field/direction_field.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

@@ -9,9 +9,9 @@
 #include <cstring>
 #include <fstream>
 
-#include "vdb_offset/error.h"
-#include "vdb_offset/level_set.h"
+#include "vdb_offset/field.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "vdb_offset/distance_field.h"
+#include "vdb_offset/field.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "space/field/count_leaf_nodes.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -8,7 +8,7 @@
 #include "space/field/field_grids.h"
 #include "space/field/run_bytes.h"
 #include "space/surface/surface.h"
-#include "vdb_offset/grid.h"
+#include "vdb_offset/options.h"
 
 namespace vdb_offset {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_offset/level_set.h"
+#include "vdb_offset/field.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/SignedFloodFill.h>
@@ -8,7 +8,7 @@
 #include "space/field/count_leaf_nodes.h"
 #include "space/field/rasterise.h"
 #include "space/surface/surface.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

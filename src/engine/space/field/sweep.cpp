@@ -2,7 +2,7 @@
 #include "space/field/sweep.h"
 
 #include "space/field/leaf_rounds.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 

@@ -11,7 +11,7 @@
 #include "ground/numbers/index_set.h"
 #include "space/surface/border_loops.h"
 #include "space/surface/start_direction.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

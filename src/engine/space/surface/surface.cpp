@@ -18,7 +18,7 @@
 #include "space/surface/connect_faces.h"
 #include "space/surface/seams.h"
 #include "space/surface/weld.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

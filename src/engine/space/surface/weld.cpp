@@ -11,7 +11,7 @@
 #include "ground/numbers/hash_mix.h"
 #include "ground/system/parallel.h"
 #include "space/surface/seams.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {

@@ -9,7 +9,7 @@
 #include "motion/paths/own_distances.h"
 #include "space/query/closest_query.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

@@ -15,7 +15,7 @@
 #include "valid/faults/source_crossings.h"
 #include "valid/faults/triangle_crossings.h"
 #include "valid/faults/vertex_positions.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

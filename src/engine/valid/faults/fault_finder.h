@@ -17,7 +17,7 @@
 #include "valid/faults/rim_crossings.h"
 #include "valid/faults/vertex_positions.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

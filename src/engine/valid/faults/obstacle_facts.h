@@ -9,7 +9,7 @@
 #include "motion/paths/propagate.h"
 #include "valid/faults/clearance.h"
 #include "vdb_offset/distances.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

@@ -7,8 +7,8 @@
 #include "motion/paths/propagate.h"
 #include "valid/faults/fault_finder.h"
 #include "valid/limit/warm_start.h"
+#include "vdb_offset/result.h"
 #include "vdb_offset/run.h"
-#include "vdb_offset/statistics.h"
 
 namespace vdb_offset {
 

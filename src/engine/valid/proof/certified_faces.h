@@ -9,7 +9,7 @@
 #include "space/query/closest_query.h"
 #include "valid/proof/offset_prover.h"
 #include "vdb_offset/options.h"
-#include "vdb_offset/statistics.h"
+#include "vdb_offset/result.h"
 
 namespace vdb_offset {
 

@@ -22,8 +22,8 @@
 #include "document/format_readers.h"
 #include "document/require_format.h"
 #include "document/trial.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/numbers.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "products/volume/volume_faces.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "volume/volume_writers.h"
 
 // https://cgns.github.io/standard/SIDS: elements are numbered from 1, through all sections.

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "document/trial.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vtk/module/vtk_cells.h"
 #include "vtk/module/vtk_complaint.h"
 #include "vtk/module/vtk_document.h"

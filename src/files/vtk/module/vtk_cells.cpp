@@ -16,7 +16,7 @@
 #include <string>
 
 #include "document/require_format.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

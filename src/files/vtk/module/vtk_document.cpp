@@ -24,7 +24,7 @@
 #include <utility>
 
 #include "bytes/nearest_names.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 #include "vtk/module/vtk_complaint.h"
 
 namespace vdb_offset::io {

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string_view>
 
-#include "vdb_offset/error.h"
 #include "vdb_offset/numbers.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 namespace {

@@ -15,7 +15,7 @@
 #include <system_error>
 
 #include "batch/process/child.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

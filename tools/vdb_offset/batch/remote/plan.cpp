@@ -14,9 +14,9 @@
 #include "batch/model_run.h"
 #include "outputs.h"
 #include "request/option_values.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/api.h"
 #include "vdb_offset/output_files.h"
-#include "vdb_offset/version.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

@@ -18,8 +18,8 @@
 #include "batch/process/stop.h"
 #include "messages.h"
 #include "outputs.h"
-#include "vdb_offset/error.h"
 #include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {

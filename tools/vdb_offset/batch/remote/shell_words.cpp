@@ -11,7 +11,7 @@
 #include "batch/process/child.h"
 #include "batch/remote/plan.h"
 #include "messages.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 

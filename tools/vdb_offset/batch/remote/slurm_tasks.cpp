@@ -14,7 +14,7 @@
 #include "batch/remote/shell_words.h"
 #include "messages.h"
 #include "outputs.h"
-#include "vdb_offset/error.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {
