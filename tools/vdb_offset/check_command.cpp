@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "file_plan.h"
 #include "job.h"
 #include "messages.h"
 #include "page/run_pages.h"
@@ -18,7 +19,6 @@
 #include "request/offset_options.h"
 #include "request/option_rules.h"
 #include "request/option_values.h"
-#include "run_files.h"
 #include "source.h"
 #include "summary/summary.h"
 #include "terminal.h"

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "run_files.h"
 #include "summary/summary.h"
 #include "vdb_offset/field.h"
 #include "vdb_offset/io/derived_file.h"
@@ -152,7 +151,7 @@ bool are_faces_there(const Job& job, std::span<const IsoResult> results, const I
   if (!bound) return true;
   bool all = true;
   for (std::size_t i = 0; i < results.size(); ++i)
-    all &= are_within(results[i].statistics.faces, *bound, job.outputs[i].mesh);
+    all &= are_within(results[i].statistics.faces, *bound, job.files.outputs[i].mesh);
   if (inner) all &= are_within(inner->statistics.faces, *bound, "--inner");
   return all;
 }
@@ -162,7 +161,7 @@ bool are_faces_there(const Job& job, std::span<const IsoResult> results, const I
 ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   require_even(job);
   const PolygonView mesh = job.source.view();
-  const std::vector<Destination>& destinations = job.outputs;
+  const std::vector<Destination>& destinations = job.files.outputs;
   if (job.request.dry_run) {
     for (std::size_t i = 0; i < destinations.size(); ++i)
       print_iso_dry_run(job, plan_iso_surface_in_metric(mesh, options_of(job, job.distances[i]), job.options.metric),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "file_plan.h"
 #include "request/request.h"
 #include "source.h"
 #include "vdb_offset/distances.h"
@@ -16,12 +17,6 @@ namespace vdb_offset::tool {
 
 /// Exit codes of the command.
 enum ExitCode { kDone = 0, kUsage = 1, kInput = 2, kProcessing = 3, kOutput = 4 };
-
-/// Where the offset for one distance goes. Names of files that were not asked for are empty.
-struct Destination {
-  std::string mesh, report, states, paths, html;
-  std::string distance;  ///< The distance as the user gave it.
-};
 
 /// What a request asks of a source: everything that a run needs, lengths in world units. Refers to the request and the
 /// source.
@@ -38,13 +33,13 @@ struct Job {
   std::optional<PolygonView> to_fit;   ///< The mesh that the source is to make room for, in place of a distance.
   std::vector<std::string> files_of_heights;  ///< Those that a file of heights names.
   scene::Expectations expect;                 ///< What a scene expects of its own distance.
-  std::vector<Destination> outputs;           ///< One for each distance; of layers: none.
+  FilePlan files;                             ///< All that is read and written.
 
   bool curves() const { return source.curves.has_value(); }
 };
 
 /// Settles all that depends on the mesh: takes from a scene what the command line leaves open, selects faces, evaluates
-/// distances. `job.outputs`, the target and the precision are left to resolve(). \throw ReadError, InvalidInput,
+/// distances. `job.files`, the target and the precision are left to resolve(). \throw ReadError, InvalidInput,
 /// InvalidOption
 Job resolve_options(const Request& request, const Source& source);
 

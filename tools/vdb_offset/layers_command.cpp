@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "page/run_pages.h"
-#include "run_files.h"
 #include "summary/summary.h"
 #include "vdb_offset/cells.h"
 #include "vdb_offset/curve_offset.h"
@@ -71,7 +70,7 @@ void grow(const Job& job, Grown& grown) {
 void write_surfaces(const Job& job, const LayersResult& layers) {
   const Source& source = job.source;
   for (std::size_t k = 0; k < layers.count(); ++k) {
-    const std::string path = name_of_layer(job.request.output, k + 1, layers.count());
+    const std::string& path = job.files.layers[k];
     const std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
     if (source.curves) write_curves(path, source, surface, write_options(job.request, path));
     else if (source.file) tell_losses(job.request, path, io::write_mesh(job.target->at(path), *source.file, surface));
@@ -131,17 +130,6 @@ bool are_faces_there(const Request& request, const LayersResult& layers) {
   return outermost && first;
 }
 
-void require_names(const Request& request, std::size_t layers) {
-  for (const std::string& path : {request.report, request.states, request.html})
-    if (!path.empty()) require_writable(path);
-  if (is_volume(request.output)) {
-    io::require_volume_writer(request.output);
-    if (io::volume_format_of(request.output) != io::VolumeFormat::Foam) require_writable(request.output);
-    return;
-  }
-  for (std::size_t k = 1; k <= layers; ++k) require_writable(name_of_layer(request.output, k, layers));
-}
-
 void write_report_and_page(const Job& job, const Grown& grown, const Timing& timing) {
   const Request& request = job.request;
   if (request.report.empty() && request.html.empty()) return;
@@ -164,7 +152,8 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
                   heights.back());
     return kDone;
   }
-  require_names(request, heights.size());
+  if (is_volume(request.output)) io::require_volume_writer(request.output);
+  require_writable_files(job.files);
   Grown grown;
   grow(job, grown);
   LayersResult& layers = grown.layers;

@@ -11,6 +11,7 @@
 #include "batch/batch_command.h"
 #include "batch/process/gate.h"
 #include "check_command.h"
+#include "file_plan.h"
 #include "iso_command.h"
 #include "job.h"
 #include "layers_command.h"
@@ -18,7 +19,6 @@
 #include "offset_command.h"
 #include "outputs.h"
 #include "request/request.h"
-#include "run_files.h"
 #include "source.h"
 #include "terminal.h"
 #include "vdb_offset/output_files.h"
@@ -27,21 +27,8 @@
 namespace vdb_offset::tool {
 namespace {
 
-/// \throw WriteError for outputs that cannot be written, as far as their names are known: those of layers depend on the
-/// source.
-void require_writable_outputs(const Request& request) {
-  if (request.dry_run || request.layers) return;
-  for (const Destination& to : destinations(request, request.distances))
-    for (const std::string& path : {to.mesh, to.report, to.states, to.paths, to.html})
-      if (!path.empty()) require_writable(path);
-  if (!request.vdb.empty()) require_writable(request.vdb);
-  if (!request.tolerance) return;
-  for (const std::string& path : {request.tolerance->refined_source, request.tolerance->map})
-    if (!path.empty()) require_writable(path);
-}
-
 ExitCode run(const Job& job, const Timing& timing, ProgressBar& bar) {
-  require_apart(job);
+  require_apart(job.files);
   if (job.request.layers) return run_layers(job, timing, bar);
   return job.request.iso ? run_iso(job, timing, bar) : run_offset(job, timing, bar);
 }
@@ -55,12 +42,13 @@ ExitCode run(const Request& request) {
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
   const bool curves = holds_curves(request.input);
   require_for_input(request, curves);
-  require_apart(request);
-  require_writable_outputs(request);
+  const FilePlan files = plan_files(request);
+  require_apart(files);
+  // Names that a scene's own distance is part of, and those of layers, are known later.
+  if (!request.dry_run && !request.layers && !request.distances.empty()) require_writable_files(files);
   ProgressBar bar(!request.quiet);
   bar.show(Stage::Read, 0);
   const Source source = read_source(request, curves);
-  require_apart(request, source.files_named);
   Job job = resolve(request, source);
   job.options.progress = [&](Stage stage, double share) {
     bar.show(stage, share);

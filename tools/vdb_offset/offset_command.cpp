@@ -99,7 +99,7 @@ std::string in_words(const FaultCounts& counts) {
 /// Names the outputs that are not valid although they should be. Returns false if there are none.
 bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
   bool any = false;
-  const std::vector<Destination>& destinations = job.outputs;
+  const std::vector<Destination>& destinations = job.files.outputs;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const FaultCounts& left = results[i].statistics.limit.left;
     if (left.total() == 0) continue;
@@ -115,7 +115,7 @@ std::optional<Products> try_outputs(const Job& job, const Outcome& outcome, cons
   try {
     return write_outputs(job, outcome, timing.start);
   } catch (const io::NoCadModel& error) {
-    if (job.outputs.size() == 1) throw;
+    if (job.files.outputs.size() == 1) throw;
     tell(error.what());
     return std::nullopt;
   }
@@ -129,12 +129,12 @@ bool tell_cad_gaps(const Job& job, std::span<const std::optional<Products>> all)
     if (!all[i] || !all[i]->cad) continue;
     const CadFileFacts& cad = *all[i]->cad;
     if (cad.made == CadFileFacts::Made::Facets && !job.request.quiet)
-      tell(fmt::format("{}: of triangles, as no other model could be made: {}", job.outputs[i].mesh,
+      tell(fmt::format("{}: of triangles, as no other model could be made: {}", job.files.outputs[i].mesh,
                        fmt::join(cad.gaps, "; ")));
     if (cad.made != CadFileFacts::Made::Faces) continue;
     any = true;
-    tell(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)", job.outputs[i].mesh,
-                     fmt::join(cad.gaps, "; ")));
+    tell(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)",
+                     job.files.outputs[i].mesh, fmt::join(cad.gaps, "; ")));
   }
   return any;
 }
@@ -147,7 +147,9 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
     for (std::string& expectation : scene::unmet(job.expect, *shell)) failed.push_back(std::move(expectation));
   for (const std::string& expectation : failed) tell(fmt::format("{}: {}", job.request.input, expectation));
   if (!failed.empty() || tell_faults(job, results)) return kProcessing;
-  const auto output = [&](std::size_t i) { return i < job.outputs.size() ? job.outputs[i].mesh : "--inner"; };
+  const auto output = [&](std::size_t i) {
+    return i < job.files.outputs.size() ? job.files.outputs[i].mesh : "--inner";
+  };
   bool faces_there = true;
   for (std::size_t i = 0; i < results.size() && !job.to_fit; ++i)
     faces_there &= reaches_anything(results[i], output(i), job.curves());
@@ -158,7 +160,7 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
   for (std::size_t i = 0; i < results.size() && job.request.strict; ++i)
     as_asked &= is_as_asked(results[i], job.curves());
   if (const auto& certified = results.front().statistics.certified)
-    as_asked &= is_certified(*certified, job.request.strict, job.outputs.front().mesh);
+    as_asked &= is_certified(*certified, job.request.strict, job.files.outputs.front().mesh);
   return as_asked ? kDone : kProcessing;
 }
 
@@ -170,14 +172,14 @@ ExitCode finish(const Job& job, std::vector<OffsetResult>& results, const Refine
   std::vector<std::optional<Products>> made;
   OutputFiles outputs(request.sync);
   if (refined) write_refinement(request, *refined);
-  for (std::size_t i = 0; i < job.outputs.size(); ++i) {
+  for (std::size_t i = 0; i < job.files.outputs.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
-    made.push_back(try_outputs(job, {job.outputs[i], results[i], inner}, timing));
+    made.push_back(try_outputs(job, {job.files.outputs[i], results[i], inner}, timing));
   }
   outputs.commit(ignore_interrupts);
   bar.clear();
-  for (std::size_t i = 0; i < job.outputs.size() && !request.quiet; ++i)
-    if (made[i]) print_summary(job, {job.outputs[i], results[i], inner}, *made[i], seconds_since(timing.start));
+  for (std::size_t i = 0; i < job.files.outputs.size() && !request.quiet; ++i)
+    if (made[i]) print_summary(job, {job.files.outputs[i], results[i], inner}, *made[i], seconds_since(timing.start));
   const ExitCode judged = judge(job, results, made.back() ? made.back()->shell : std::nullopt);
   return tell_cad_gaps(job, made) ? kProcessing : judged;
 }
@@ -229,7 +231,7 @@ ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar
                        .asked = job.asked,
                        .distances = {results.front().distances},
                        .expect = expect,
-                       .outputs = job.outputs};
+                       .files = job.files};
   return finish(of_refined, results, &refined, timing, bar);
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "distances/part_distances.h"
 #include "messages.h"
@@ -20,27 +19,6 @@
 
 namespace vdb_offset::tool {
 namespace {
-
-/// A distance as given, without characters that file names may not have.
-std::string as_name(std::string distance) {
-  for (char& c : distance)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && std::string_view(".+-%_").find(c) == std::string_view::npos)
-      c = '_';
-  return distance;
-}
-
-std::string numbered(std::string name, std::size_t number, std::size_t of, const std::string& distance) {
-  if (name.empty() || name == "-") return name;
-  bool marked = false;
-  for (const auto& [mark, value] :
-       {std::pair<std::string, std::string>{"{i}", fmt::format("{:03}", number)}, {"{d}", as_name(distance)}})
-    for (std::size_t at = name.find(mark); at != std::string::npos; at = name.find(mark, at + value.size())) {
-      name.replace(at, mark.size(), value);
-      marked = true;
-    }
-  if (!marked && of > 1) name.insert(ending_of(name), fmt::format("_{:03}", number));
-  return name;
-}
 
 /// The names and values of all options that are in force.
 std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job, const Destination& to) {
@@ -159,7 +137,7 @@ io::CadWriting cad_writing(const Job& job) {
 
 /// The distances of an output that is a CAD model.
 io::CadDistances distances_of_model(const Job& job, const Destination& to) {
-  const auto number = static_cast<std::size_t>(&to - job.outputs.data());
+  const auto number = static_cast<std::size_t>(&to - job.files.outputs.data());
   return cad_distances(job, job.asked[number], job.distances[number]);
 }
 
@@ -180,28 +158,6 @@ void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>&
 }  // namespace
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-std::size_t ending_of(const std::string& name) {
-  const std::size_t folder = name.rfind('/') == std::string::npos ? 0 : name.rfind('/') + 1;
-  std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos || dot <= folder) return name.size();
-  const std::string last = name.substr(dot);
-  if (last != ".gz" && last != ".zst") return dot;
-  const std::size_t before = name.rfind('.', dot - 1);
-  return before == std::string::npos || before <= folder ? dot : before;
-}
-
-std::vector<Destination> destinations(const Request& request, std::span<const DistanceRequest> distances) {
-  std::vector<std::string> texts;
-  for (const DistanceRequest& each : distances) texts.push_back(each.text);
-  std::vector<Destination> all;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    const auto named = [&](const std::string& name) { return numbered(name, i + 1, texts.size(), texts[i]); };
-    all.push_back({named(request.output), named(request.report), named(request.states), named(request.paths),
-                   named(request.html), texts[i]});
-  }
-  return all;
-}
 
 void tell_losses(const Request& request, const std::string& path, const io::WriteResult& written) {
   if (request.quiet) return;
@@ -228,14 +184,9 @@ void write_refinement(const Request& request, const RefinedSource& refined) {
   if (!map.empty()) io::write_vertex_map(map, refined.refinement, refined.vertex);
 }
 
-std::string name_of_layer(const std::string& output, std::size_t number, std::size_t of) {
-  return numbered(output, number, of, fmt::format("{}", number));
-}
-
 std::string layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
                           Clock::time_point start) {
-  const Request& request = job.request;
-  RunFacts facts = facts_of(job, {request.output, request.report, request.states, {}, request.html, {}}, start);
+  RunFacts facts = facts_of(job, job.files.outputs.front(), start);
   facts.layers = report;
   return report_json(result, facts);
 }

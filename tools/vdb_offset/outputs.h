@@ -27,13 +27,6 @@ struct Timing {
   double read_seconds;
 };
 
-/// Where the ending of a name begins. `.gz` and `.zst` belong to the ending before them.
-std::size_t ending_of(const std::string& name);
-
-/// One for each distance: `{i}` in a name becomes its number, from 001 on, `{d}` the distance as given; without either
-/// the number is put behind the name, if there are several.
-std::vector<Destination> destinations(const Request& request, std::span<const DistanceRequest> distances);
-
 /// What was made besides a mesh.
 struct Products {
   std::optional<ShellFacts> shell;
@@ -46,9 +39,6 @@ struct Outcome {
   OffsetResult& result;
   const OffsetResult* inner = nullptr;  ///< The inner skin of a shell, if that was asked for.
 };
-
-/// The name of one of several layers' meshes: as destinations() would have it.
-std::string name_of_layer(const std::string& output, std::size_t number, std::size_t of);
 
 /// Tells on standard error what a mesh could not be given.
 void tell_losses(const Request& request, const std::string& path, const io::WriteResult& written);

@@ -9,7 +9,6 @@
 #include "distances/heights.h"
 #include "distances/part_distances.h"
 #include "job.h"
-#include "outputs.h"
 #include "request/option_values.h"
 #include "vdb_offset/io/cad_file.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -201,7 +200,7 @@ Job resolve(const Request& request, const Source& source) {
   else if (job.curves())
     job.options.precision =
         io::precision_of_curves(request.output, *source.curves, write_options(request, request.output));
-  if (!request.layers) job.outputs = destinations(request, job.asked);
+  job.files = plan_files(job);
   return job;
 }
 

@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "batch/fingerprint.h"
+#include "file_plan.h"
 #include "outputs.h"
 #include "request/request.h"
-#include "run_files.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/volume_file.h"
 
@@ -59,14 +59,6 @@ void require_pattern(const std::string& option, const std::string& pattern) {
 
 std::string path_of_report(const std::string& out, const Model& model) {
   return fmt::format("{}/running/{}.json", state_folder(out), state_name(model));
-}
-
-/// Where the reports of a run go, one for each distance.
-std::vector<std::string> reports_of(const Request& request) {
-  if (request.layers || request.distances.empty()) return {request.report};
-  std::vector<std::string> reports;
-  for (const Destination& to : destinations(request, request.distances)) reports.push_back(to.report);
-  return reports;
 }
 
 /// {i} and {d} mean something else in the names of outputs. \throw UnusableName
@@ -133,9 +125,10 @@ ModelRun run_of(const BatchRequest& request, const Model& model) {
   for (const std::string& word : run.words) line.push_back(word.c_str());
   const Request parsed = parse_command_line(static_cast<int>(line.size()), line.data()).value();
   require_known_ending(parsed);
-  run.reports = reports_of(parsed);
-  for (const RunFile& file : files_read(parsed)) run.read.push_back(file.path);
-  for (const RunFile& file : files_written(parsed))
+  const FilePlan files = plan_files(parsed);
+  for (const Destination& to : files.outputs) run.reports.push_back(to.report);
+  for (const RunFile& file : files.read) run.read.push_back(file.path);
+  for (const RunFile& file : files.written)
     if (run.keeps_reports || file.option != "--report") run.written.push_back(file.path);
   return run;
 }

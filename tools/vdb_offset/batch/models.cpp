@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "outputs.h"
+#include "file_plan.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {

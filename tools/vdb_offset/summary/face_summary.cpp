@@ -32,7 +32,7 @@ std::string area_percent(double share) { return fmt::format("{:.2f}", std::floor
 /// Whether faces could be split in place of a mesh that is finer, for which the option is named then.
 bool may_be_split(const Job& job, const OffsetStatistics& statistics) {
   return !statistics.certified && !job.curves() && !job.request.layers && !job.request.axes && !job.to_fit &&
-         !job.shell && job.outputs.size() == 1;
+         !job.shell && job.files.outputs.size() == 1;
 }
 
 /// Which corners faces are off beside, and what helps. Where more than two faces meet at an edge, nothing does.

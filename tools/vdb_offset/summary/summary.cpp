@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "messages.h"
-#include "run_files.h"
 #include "vdb_offset/report.h"
 #include "vdb_offset/shell.h"
 
@@ -18,10 +17,8 @@ namespace vdb_offset::tool {
 namespace {
 
 /// Whether standard output is one of the files that are written.
-bool output_is_taken(const Request& request) {
-  const ToleranceRequest tolerance = request.tolerance.value_or(ToleranceRequest{});
-  return is_standard_output(request.output) || is_standard_output(request.report) || is_standard_output(request.html) ||
-         is_standard_output(tolerance.refined_source) || is_standard_output(tolerance.map);
+bool output_is_taken(const Job& job) {
+  return std::ranges::any_of(job.files.written, [](const RunFile& file) { return is_standard_output(file.path); });
 }
 
 void print_curve_facts(std::FILE* out, const MeshFacts& facts) {
@@ -234,7 +231,7 @@ void print_fit_dry_run(const Job& job, const OffsetStatistics& statistics) {
 }
 
 void print_summary(const Job& job, const Outcome& outcome, const Products& made, double total_seconds) {
-  const Printout out(output_is_taken(job.request));
+  const Printout out(output_is_taken(job));
   // Whose faces are not the mesh's.
   const bool is_cad_model = made.cad && made.cad->made != CadFileFacts::Made::Facets;
   const OffsetResult& result = outcome.result;
@@ -276,7 +273,7 @@ void print_hollow_summary(const Job& job, const std::string& path, double distan
   print_iso_summary(job, path, distance, iso, total_seconds);
   if (inner) print_iso_summary(job, path, inner->statistics.distance, *inner, total_seconds);
   const ShellFacts& shell = hollow.facts;
-  const Printout out(output_is_taken(job.request));
+  const Printout out(output_is_taken(job));
   fmt::print(out, "{}: hollow solid {}, {}, volume {:.6g}, {} pairs of triangles meet", path,
              shell.closed ? "closed" : "not closed", shell.oriented ? "oriented" : "not oriented", shell.volume,
              shell.crossings);
@@ -288,7 +285,7 @@ void print_hollow_summary(const Job& job, const std::string& path, double distan
 
 void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
                        double total_seconds, const std::optional<LevelSetFacts>& level_set) {
-  const Printout out(output_is_taken(job.request));
+  const Printout out(output_is_taken(job));
   const IsoStatistics& found = result.statistics;
   const MeshFaults& left = found.mending.left;
   if (job.request.verbose) {
@@ -317,7 +314,7 @@ void print_iso_summary(const Job& job, const std::string& path, double distance,
 }
 
 void print_layers_summary(const Job& job, const LayersResult& result, const LayerReport& report, double total_seconds) {
-  const Printout out(output_is_taken(job.request));
+  const Printout out(output_is_taken(job));
   if (job.request.verbose) print_details(out, result.statistics, result.heights.back(), job.curves());
   fmt::print(out, "{}: {}", job.request.output, summary(report));
   fmt::print(out, "{:.2f} s\n", total_seconds);

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "batch/model_run.h"
-#include "outputs.h"
+#include "file_plan.h"
 #include "request/option_values.h"
 #include "vdb_offset/api.h"
 #include "vdb_offset/output_files.h"
