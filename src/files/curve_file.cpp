@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and writes files of plane curves. Texts have a point a line and a blank line between curves; airfoils in
+// Lednicer's order become one curve. OBJ files have line elements, whose indices may count back or ahead. SVG and DXF
+// drawings are read and rewritten by folders of their own. The reader notes where each coordinate stands: in the format
+// of the source every byte of a text or an OBJ file stays but for coordinates that changed, and in a drawing all bytes
+// but those of what moved. Another format gets a new file with the points of each curve in order. An OBJ file holds
+// curves if it has line elements and no faces. Whether curves lie in one plane, and which of them meet, is not looked
+// at here.
 #include "vdb_offset/io/curve_file.h"
 
 #include <fmt/format.h>

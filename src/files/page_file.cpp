@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the HTML file that shows a run in a browser. The source and the surfaces beside it go in; if they have more
+// triangles than are shown, view_mesh.cpp leaves fewer vertices, those that are farthest from what was asked before
+// others. What is shown becomes arrays of numbers, positions as seen from one centre in single precision, and
+// everything else JSON. Both are filled into the page that the library was built with, together with the viewer's
+// scripts. Text from outside is escaped so that it cannot end an element of the page. Figures and counts are of all
+// vertices, shown or not; of faults, no more than a bound are marked. The bytes do not depend on the number of threads.
+// Nothing is measured here, and the page loads nothing.
 #include "vdb_offset/io/view_file.h"
 
 #include <fmt/format.h>

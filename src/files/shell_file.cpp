@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a shell of a mesh from a file. In the source's own format the shell is written by the source's rows: Skin has
+// for each vertex and normal of a skin the source's own text, new numbers where something moved, and the other sign for
+// inner normals. Other formats, and files of strips of triangles, are converted (derived/convert_shell.cpp). Normals
+// are computed anew around faces that moved, for vertices of both skins at once where junctions have split them.
+// Vertices that did not move keep their numbers, and what the target cannot hold is named. Nothing is put in place if
+// the source's bytes have changed meanwhile. Faces and positions of the shell are taken as they are (see
+// products/shell).
 #include "vdb_offset/io/derived_file.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes what became of each vertex: its state, the distance asked for and the distance found. By its ending the file
+// is a table (CSV, numbers with all their digits), or the mesh for a viewer to colour: PLY, binary in this machine's
+// byte order, or VTK's .vtp, which also has shares, errors, faults and groups, and the words for numbers. In PLY and
+// .vtp distances are in single precision, and a share is NaN where nothing was asked. Paths of vertices become lines of
+// a .vtp with a line's vertex, state and distances; a vertex that stays has none. Vertices keep their order and number.
+// Nothing is measured here.
 #include "vdb_offset/io/view_file.h"
 
 #include <fmt/format.h>

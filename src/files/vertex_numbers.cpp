@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads one number for each vertex of a mesh: from a text, from an array that NumPy saved, or from a property of the
+// mesh file itself. The first bytes decide between text and array. A text is read word by word. The header of an array
+// is read here: its version, its length, and a dictionary that has each of its three keys once, in any order; the
+// numbers behind it, floating or whole and in either byte order, are read in parallel. There have to be as many numbers
+// as vertices, all of them finite, or the file is refused by the line or the byte of what is wrong. Memory stays within
+// a small multiple of the count, whatever a header promises. What the numbers mean is up to the caller.
 #include "vdb_offset/io/mesh_file.h"
 
 #include <fmt/format.h>

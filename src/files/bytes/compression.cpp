@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compresses and decompresses bytes by gzip and zstd, as a file's ending says. Members of gzip and frames of zstd
+// follow each other in a file, and all of them are taken, a chunk at a time. The result may take half of the memory
+// that is free and no more than the run's limit; data that are damaged or end early are refused, with the byte.
+// compress() makes one member or frame, so that a file can be put together from pieces that were compressed by
+// themselves, on several threads. compress_block() makes zlib's own format for VTK's files. Bytes without such an
+// ending pass through as they are; whether a file's first bytes fit its ending is not asked.
 #include "bytes/compression.h"
 
 #include <fmt/format.h>

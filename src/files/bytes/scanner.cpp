@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Walks over the text of a file token by token, for all readers of texts. A line ends at a line feed, or at another
+// character that a format asks for; a comment counts as the end of its line; a backslash at the end of a line joins it
+// to the next one where the format has that, but not in a comment. Tokens are views of the text, which is never copied.
+// A number is a whole token, with a plus sign allowed; one that is too long, or not finite where that is asked, is
+// refused. Messages name the file, the line, what was expected and what was found, cut short and without control bytes.
+// Lines are counted only when a message needs it. What tokens mean is up to the readers.
 #include "bytes/scanner.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes files of VTK's XML without VTK: a text that describes the data set, and behind it the arrays, appended raw.
+// The text is put together by the caller; for each array it has a place where the array's offset is filled in. Without
+// compression all offsets are known before, and the file is made of pieces. With it, each array is compressed in blocks
+// of a fixed size, several at a time, and offsets and the blocks' sizes are written by going back once they are known.
+// Blocks are cut by size alone, so that the bytes do not depend on the number of threads. Numbers are little-endian,
+// with counts of 64 bits. Whether the text fits the arrays is up to the caller.
 #include "bytes/vtk_xml.h"
 
 #include <fmt/format.h>

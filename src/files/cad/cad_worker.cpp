@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Has OpenCASCADE read a CAD file in a program of its own, and asks that program about the file. The file's bytes are
+// handed over as a file without a name; the worker is started, and has to be of this version. Each request is a message
+// and gets one reply, and all of them together have so many seconds. A worker that ends, is late or answers with
+// something else is given up, and answers nothing more; that, and a request for more memory than it may have, becomes
+// an error that begins with the file's name. Replies are unpacked with their lengths checked. So a broken file cannot
+// harm this process. What the worker does with a request is in src/cad.
 #include "cad/cad_worker.h"
 
 #include <fcntl.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Gives iso-surfaces and hollow solids the attributes of their source, and encodes them. A vertex takes the colour of
+// its closest point, interpolated on the triangle there. Texture coordinates come from the chart of each triangle, so
+// that seams run between triangles; corners of a vertex with equal ones share one value. Materials, which only OBJ
+// keeps, are those closest to the centres of triangles; an iso-surface is sorted by them. Of a hollow solid, the skin
+// that is the source keeps all that it has, with normals turned round if it is the inner one, and the other skin takes
+// colours and materials alone. Normals of an iso-surface are gradients of the distance. What the format cannot hold is
+// named. Closest points are found in products/iso/source_lookup.cpp, and positions stay as they come.
 #include "derived/convert_iso.h"
 
 #include <algorithm>

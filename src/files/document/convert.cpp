@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a mesh file as one of another format, with other positions. The attributes of the source are read, normals of
+// faces that moved are computed anew, and what the target has no place for is dropped and named in words: nothing is
+// lost in silence. Where a format has one value for a vertex, values of corners become values of vertices if all
+// corners agree; PLY keeps texture coordinates of corners. Materials go to formats that have them, and the faces of a
+// CAD model become parts where there are such. Faces keep their order. Bytes are made by the formats' own writers
+// (encode.h); shells and iso-surfaces use the functions here as well.
 #include "document/convert.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds what the faces of a mesh are by their shape: up and down, curved outward and inward, and round holes. Faces in
+// one plane that share an edge are joined to facets; between neighbouring facets stand bends, above 0 where the edge is
+// convex. A ring grows from a facet and two neighbours that bend to one side, whose normals give an axis, to neighbours
+// around nearly that axis until it closes. It is round if it has eight facets or more, all normals make one angle with
+// its axis, the direction in which they vary least, and they go around it once. The diameter follows from a
+// least-squares circle, or from the tip of a cone. A facet of no ring is curved by the sum of its bends, weighted by
+// the lengths of edges, without sharp ones. Edges that do not have two faces in opposite directions are passed over.
 #include "document/face_shapes.h"
 
 #include <openvdb/math/Mat3.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Computes normals of a file anew where faces moved. The corners that name each normal are listed by a counting sort;
+// the new normal is the sum, over these corners, of the unit normal there times the corner's angle, brought to length
+// 1. It is computed only if a vertex of one of those faces moved; any other normal is marked as one that stays. In
+// files that are no rows, vertices with equal positions and normals, as seams split them, share the new one. STL gets
+// the normal of each facet. OBJ normals that stand for vertices with clearly different ones now are counted. Positions
+// are taken as they will be written. Normals are summed up in the file's order, each by one thread, so that the result
+// does not depend on their number.
 #include "document/new_normals.h"
 
 #include <tbb/parallel_sort.h>

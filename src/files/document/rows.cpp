@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a file again with other numbers where they stand. The source's bytes, the place of each coordinate and normal,
+// and new values go in; pieces of the new file come out, which can be made in any order and on several threads. A text
+// is cut at lines, a binary file between vertices and normals. In a text, the digits of a changed number are replaced
+// up to the white space, comment or joining backslash behind it; in a binary file, its bytes are overwritten in their
+// width and order. Every other byte of the source stays, and so do the numbers of vertices that did not move. Line ends
+// that are carriage returns alone are put back. Rows are neither added nor taken away here; formats do that themselves.
 #include "document/rows.h"
 
 #include <fmt/format.h>

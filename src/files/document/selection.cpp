@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Marks the faces that selectors name: by group, material, a file of numbers, face, name or colour of a CAD model, or
+// by shape. Names of groups and materials are collected in one pass over the labels of the file. A file of numbers is
+// read as marks and as indices at once, as only its length decides which it is. Shapes are found by face_shapes.cpp,
+// and what a CAD model knows by its document. The marks of all selectors are joined, and faces behind not: are taken
+// out of them, or of all faces if nothing else is named. A name that no face has is refused with those that are like
+// it, and so are a shape that is not there and a selection that leaves nothing. What becomes of marked faces is decided
+// elsewhere.
 #include "vdb_offset/io/mesh_file.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds where the vertices of a mesh stand in a file of its triangles alone, face by face, and how the file splits the
+// faces. A polygon of n corners takes n - 2 triangles in a row. Triangles go first, then quads, then larger polygons,
+// as corners that are known from the former settle the latter. A polygon is matched as a fan around its first corner
+// and as it is split at its own positions; if both fit, the one counts with which its corners have moved less. If
+// neither fits, the outline of its triangles is matched as a ring, from the start with which corners move least. A
+// vertex has one position in all of its faces, or there is no result; there is none either if the counts do not fit.
+// Positions are compared exactly, without a tolerance.
 #include "vdb_offset/io/mesh_file.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes lines and polylines in the place of a DXF file's entities, with what these have besides their form. An entity
+// of its own keeps its layer, colour, line type, handle, extended data and lists byte for byte. One that an INSERT
+// shows gets a handle of its own, and what it leaves to its block (the layer 0, BYBLOCK) is that of the INSERT, or of
+// the one that shows this. A line of two points stays a LINE. Points at one height become a LWPOLYLINE where the file's
+// version has these, and all others a POLYLINE with its vertices, plane or in space. Of widths only the constant one of
+// a LWPOLYLINE stays. Handles go on from the highest one in the file. Where in the file an entity goes is decided in
+// dxf_rewrite.cpp.
 #include "dxf/dxf_copies.h"
 
 #include <fmt/format.h>

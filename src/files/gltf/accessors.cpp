@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the accessors of a glTF file, and makes sure that all of their elements lie within their buffers. Type, width,
+// count, offsets and stride are taken from the JSON and bounded so that no sum overflows; sparse and compressed
+// accessors are refused. Whole numbers that are normalized become shares from 0 or -1 to 1. require_apart() sorts the
+// byte ranges of all accessors, sparse parts and images, and sweeps over them: no element that is to be rewritten may
+// share a byte with anything else, but elements of one stride may lie in each other's gaps. An accessor that nothing
+// rewrites and that cannot be read is passed over there. Values are not looked at: whether positions are finite is
+// checked elsewhere.
 #include "gltf/accessors.h"
 
 #include <fmt/format.h>

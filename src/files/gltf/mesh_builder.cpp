@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes one mesh of the triangles of a glTF file's meshes, each where the scene places it first. Each accessor of
+// positions becomes a block of vertices, in the order in which primitives name them; a primitive that names it again
+// shares the block, unless it is placed elsewhere. Strips and fans become triangles, which are turned round where a
+// transform mirrors. Faces are named by their node or mesh, and by their material. How many corners there may be is
+// bounded by the bytes of the file. What is to be rewritten has to have bytes and a role of its own, so that nothing
+// else of the file changes with it; a file in which it has not is refused. Points, lines and what the scene does not
+// show are left out, and remarks say how many. Morph targets and weights of bones stay as they are.
 #include "gltf/mesh_builder.h"
 
 #include <fmt/format.h>

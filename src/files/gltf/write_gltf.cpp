@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a mesh as a new glTF 2.0 file, .glb or .gltf. Vertices whose corners have several normals or texture
+// coordinates are split first (split_vertices.h), the mesh's own before their copies. Each attribute is a view with an
+// accessor, that of positions with bounds; indices have 16 bits if these are enough. Each part becomes a node, and each
+// run of faces of one material a primitive, so that faces keep their order. Texture coordinates run down the picture,
+// and colours of materials become linear light. The JSON is made at once and the binary data in pieces; a .gltf has the
+// data inside, in base64. Coordinates beyond single precision's range are refused. Images are not written.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads an OBJ file in parallel: the mesh comes out, with the normal of each corner, the places of all coordinates and
+// normals, and the names of everything else. The text is cut at lines into runs. A first pass counts what each run
+// holds, so that each has its own part of the arrays; a second one parses them there, plain lines by a fast cursor and
+// all others by a Scanner, which also gives the messages. If several runs fail, the first one in the file is reported:
+// neither mesh nor message depends on the number of threads. Arrays are bounded by the bytes of the file, and indices
+// are checked as they are read. Lines of other kinds are only noted here; texture coordinates, groups and materials are
+// read by obj_document.cpp.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 

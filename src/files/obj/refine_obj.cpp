@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes an OBJ file with the faces of a refinement. A first pass cuts the text into runs of lines, and notes what
+// stands before each run, where the last line of each kind ends, and the texture coordinates of all corners. After that
+// each run is made by itself, in any order. Added vertices, texture coordinates and normals are interpolated by the
+// shares of their origin; corners share new ones if they share those at the origin's vertices. Indices that count back
+// over added lines become plain numbers; every other line that does not describe a split face keeps its bytes. The
+// first piece keeps the comment of its face. If corners name texture coordinates that are not there, pieces have none,
+// which is named as a loss. Line elements are not split.
 #include <algorithm>
 #include <array>
 #include <optional>

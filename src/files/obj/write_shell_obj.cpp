@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a shell of an OBJ file in the source's own text. The text is cut into runs of lines, which are scanned in
+// parallel for counts and for the statements in force before each; after that the text of each run for the outer skin,
+// the inner skin and the rim is made by itself. Groups of faces get the name of their part in front. Statements such as
+// materials are repeated where those in force would be others, and ended where a face had none. Inner faces name
+// normals of their own; faces of the rim have the texture coordinates of their border, no normals and no smoothing.
+// Lines and points join the inner skin if that alone is the source, else the outer one. Numbers and lines that do not
+// change keep their text, and comments come once.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

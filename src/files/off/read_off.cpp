@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads an OFF file, text or binary as Geomview has it: the mesh comes out, with the places of all coordinates and
+// normals. The keyword says what stands with each vertex. In a text, vertices and faces have a line each, and words
+// behind what is needed are left alone; the number of edges may be missing, and counts may have lines of their own. In
+// a binary file all numbers have four bytes, big-endian, and the keyword gives the width of a vertex. A count that the
+// rest of the file cannot hold, a coordinate that is not finite, and a vertex number out of range are refused, by line
+// or byte. Colours and texture coordinates are not read here but named; off_document.cpp reads them.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes an OFF file, text or binary, with the faces of a refinement. The counts are replaced, that of edges by 0. An
+// added vertex has its position, a unit normal between those at its origin, and the other numbers interpolated by its
+// shares, as whole numbers in a text where colours are bytes. Where one of these numbers is not finite, that of the
+// nearest vertex counts. The pieces of a face have its colour, and what stood behind the face's line in a text follows
+// the last piece. Everything else keeps its bytes: vertices, faces that are not split, comments, and what stands at the
+// end.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads what a PLY file holds besides positions and faces: normals, colours, texture coordinates, and any property of
+// vertices by its name. Which properties these are is known by the names that programs give them; they count only if
+// they are single numbers of one type, or a list of texture coordinates that fits the corners of each face. Each kind
+// is read in a pass of its own over the file. Equal texture coordinates of corners share one value. An attribute that
+// is malformed is not read, and stays on the list of what another format loses. A property that is asked for by its
+// name has to be one of finite numbers, or is refused. Positions and faces are not read again.
 #include "ply/ply_document.h"
 
 #include <fmt/format.h>

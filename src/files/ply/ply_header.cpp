@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the header of a PLY file, and the numbers behind it one after the other. The header says which elements there
+// are, how many of each, and the types of their properties; a header whose lines end with carriage returns alone is
+// recognised by its first line. No element may have more rows than the file has bytes, so that a count cannot ask for
+// memory that the file does not back. BodyReader takes or skips numbers of a text or of binary data in either byte
+// order, and its errors say the line or the byte. Whether a file has faces or strips of triangles is decided here; what
+// the numbers mean is up to the reader (read_ply.cpp).
 #include "ply/ply_header.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the rows of a PLY file again, and copies or writes their cells, for shells and refinements in the same format.
+// One walk over the body notes where each element, and each row of vertices and faces, begins. A cell is a word of a
+// text or the bytes of a number; whoever writes a row copies cells that stay and appends others by their type and byte
+// order. The header is copied line by line with other counts, a wider type for vertex numbers if they ask for it, and
+// at most one more property of faces. Whatever is copied keeps its bytes. A file with other counts than the mesh that
+// was read from it has changed, and is refused. Numbers are not interpreted here but for the lengths of lists.
 #include "ply/ply_rows.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads a PLY file, text or binary in either byte order: the mesh comes out, with the places of all coordinates and
+// normals, and the names of everything else. The usual layouts are read in parallel: binary vertices without lists,
+// binary faces with no list but their corners, and texts with a row a line. Any other layout, and a file in which
+// something is wrong, is read number by number, which gives the message. Strips of triangles become triangles. Numbers
+// of a text are rounded to the type that the header declares. Memory is asked for before arrays are made, no more than
+// the file's bytes can fill, and in the end all vertex numbers are checked. Colours and texture coordinates are read
+// later (ply_document.cpp).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a PLY file, text or binary, with the faces of a refinement. An added vertex has a row of its own, made
+// property by property: its position, a unit normal between those at its origin, floating numbers and colours
+// interpolated by its shares, and of everything else the value of the nearest vertex. The pieces of a face have its row
+// with other corners; lists of texture coordinates and colours of corners are interpolated, and all else is copied.
+// Rows of vertices, faces that are not split and other elements keep their bytes, but for faces of a binary file whose
+// vertex numbers need a wider type. Strips of triangles have been replaced by faces before (ply_without_strips.cpp).
 #include <algorithm>
 #include <cmath>
 #include <iterator>

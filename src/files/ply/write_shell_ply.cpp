@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a shell of a PLY file, text or binary, in the source's own header and elements. A vertex of the shell has the
+// row of the source's vertex that it comes from; position and normal are replaced where they changed, and the normal of
+// an inner vertex that keeps it gets the other sign. A face has the row of its source's face with other corners, and
+// texture coordinates in the order of these. Faces get a property for the part that they are of, unless one of that
+// name is there, which is named as a loss. The type of vertex numbers widens only if they do not fit. All other
+// properties are copied, and so are other elements and what stands behind them, once. Comments of the header stay.
 #include <algorithm>
 #include <iterator>
 

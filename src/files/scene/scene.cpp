@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads a scene from JSON: a shape or the name of a mesh file, how that is offset, and what is expected of the result.
+// Objects are asked key by key, and a key that is not known, one that an object has twice, or a value of the wrong kind
+// is refused with its place; so are keys that exclude each other, as a distance and a fit, and expectations without
+// what they are about. The faces of a part are those that lie in a box with all of their corners. Memory for a large
+// text is asked for before it is parsed. Shapes are made in make_shape.cpp. A mesh file is named and not opened here,
+// and expectations are read but compared elsewhere (expectations.cpp).
 #include "vdb_offset/scene.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads an STL file: three vertices for each facet come out, with the places of all coordinates and normals. A file is
+// binary if its size is that which its count asks for, or if it is larger and does not begin as a text; whatever begins
+// with "solid" otherwise is a text. A text is read word by word, solid by solid; normals are passed over, as words and
+// infinities are common there, and so are remarks behind loops. A binary file is read in parallel, after memory for it
+// has been asked for, and of coordinates that are not finite the first one in the file is reported. Vertices at one
+// position are not welded here, and names of solids are read by stl_document.cpp.
 #include <fmt/format.h>
 
 #include <atomic>

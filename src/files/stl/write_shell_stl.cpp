@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a shell of an STL file in the encoding of the source. A text gets a solid for each part, with the source's
+// name behind the part's; facets are laid out anew, but a number that did not change keeps its text. A binary file
+// keeps its header, the attribute bytes of facets and what stands behind the last one; its count is new. Facets of the
+// inner skin have the source's normals with the other sign, or new ones where they moved. The rim is split into
+// triangles, with normals of their own and the attribute bytes of the facets at their border. What is lost is named:
+// several solids of a text, and the parts in a binary file, which has no names for them.
 #include <array>
 #include <cstring>
 

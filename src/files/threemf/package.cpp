@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads what a 3MF package places. From the items of its first part, components are followed from object to object,
+// also into other parts, and transforms are multiplied on the way; each mesh is entered where it is placed first.
+// Objects that are placed again are counted, and so are those that are no model and those that nothing places. Names
+// are an object's own, or a slicer's, or those of what it is in. Vertices and faces are numbered mesh by mesh in that
+// order. Components inside themselves or too deep, transforms that make a mesh flat, and parts of several units are
+// refused. Each part is read once. Positions stay in the frames of their objects; they are placed in
+// threemf_document.cpp.
 #include "threemf/package.h"
 
 #include <fmt/format.h>

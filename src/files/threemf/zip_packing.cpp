@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Packs and unpacks the contents of ZIP archives, and makes new archives. Each piece of an entry is deflated by itself,
+// in parallel, and ends on a whole byte, so that pieces follow each other as one stream; their checksums are combined.
+// The bytes depend on the pieces alone, and not on threads or the date: entries of a new archive are of the first day
+// that the format has. Sizes and offsets beyond 32 bits get wide fields. Unpacking takes memory step by step as bytes
+// come, and refuses an entry that gives more or fewer than it promised. Checksums of what is read are not compared
+// here, and archives are rewritten elsewhere (zip_rewrite.cpp).
 #include "threemf/zip_packing.h"
 
 #include <fmt/format.h>

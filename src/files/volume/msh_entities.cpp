@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the entities of a volume mesh that Gmsh asks for: corners, curves, patches and the inside, each point in the
+// one of the lowest dimension. Edges of patches whose ends both lie on several patches are sorted; an edge that two
+// patches or more have belongs to a curve, of the group of these patches. A point on several patches is a corner unless
+// just two such edges of one group meet there. Curves are walked from corner to corner; edges that are left are of
+// closed curves, which begin at their lowest point. Each patch knows its curves and in which direction its faces run
+// along them. All follows from patches and numbers: positions are not looked at.
 #include "volume/msh_entities.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes cells as a polyMesh of OpenFOAM: the texts points, faces, owner, neighbour and boundary in one folder. Faces
+// are matched first (volume_faces.h). A face between two cells is written once, as the cell with the lower number has
+// it, and all three lists of faces have one order. Patches follow by name, as walls or plain patches. The texts are
+// made piece by piece on several threads, and do not depend on their number; the five files are put in place together
+// or not at all. Coordinates have all of their digits. The mesh is measured as checkMesh does, and the measures are
+// handed back; none of them makes this refuse a mesh. Fields of points and cells are not written.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes cells as a binary MSH file of Gmsh: names of physical groups, entities with their boxes and boundaries, points
+// by the entity that they lie on, elements by entity and type, and a view for each field. Points keep their numbers,
+// counted from 1; elements are numbered in the order in which they are written, curves first, then patches, then cells
+// by type. Physical groups of all dimensions have tags of their own, as other programs look at the tag alone. The file
+// is made in pieces, which can be made on several threads and are the same whatever their number. Numbers are as this
+// machine holds them, which readers see by the first one. Polyhedra are refused.
 #include <fmt/format.h>
 
 #include <algorithm>

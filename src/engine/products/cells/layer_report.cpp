@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sums up layers and the cells over them, for each boundary patch and for all, and puts the main figures into words.
+// Faces are sorted by patch. For each patch come the roles of its faces, the cells by type, areas and thickness
+// weighted by area, the errors of the first height at vertices that keep all of theirs, and the quantiles of the cells'
+// quality. Repeated and degenerate faces and faces that were not asked to carry layers do not count for areas. Areas
+// are summed up in blocks of a fixed size, which are added in order, so that no figure depends on the number of
+// threads. The quality of cells comes in measured (measure_cells.cpp, curve_cells.cpp).
 #include "vdb_offset/cells.h"
 
 #include <fmt/format.h>

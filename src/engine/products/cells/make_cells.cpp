@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the volume mesh of layers whose cells have been numbered and measured. All arrays get their size at once;
+// points are filled in block by block through all layers, and cells column by column, each thread at places that the
+// numbers give. The faces of the boundary follow: the wall by its names, the outer side, and the open sides, of which
+// those with common points belong to one opening and to one patch; of very many openings the smallest share the last
+// patch. Each face that a single cell has is in one patch. The order of all of this does not depend on the number of
+// threads. Positions are taken from the stacks as they are, and nothing is measured here (see measure_cells.cpp).
 #include "products/cells/make_cells.h"
 
 #include "ground/numbers/disjoint_sets.h"

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures the cells over layers from their numbers alone, without making the mesh. Four columns of prisms in a row go
+// together, layer by layer, and each triangle serves the prisms below and above it. Any other column is made as a small
+// mesh of its own, whose cells are measured one by one. The volume is that between one origin and the faces of the
+// boundary: the wall, the outer side and the open sides. Columns are summed up in blocks of a fixed size, and blocks
+// are added in order, so that the result does not depend on the number of threads. Measures come in the order of cells
+// that make_cells() has. An invalid cell is measured as any other; nothing is refused here.
 #include "products/cells/measure_cells.h"
 
 #include <algorithm>

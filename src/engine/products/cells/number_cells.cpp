@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers the points and cells over layers before any is made. Faces that are polygons by position carry a column, or
+// two where growing has split a quad; columns that repeat an earlier one, or have no height at any corner, go, and
+// those on the other side are turned round. The sides of columns at each edge are paired, forwards with backwards. A
+// side without a partner is on the boundary; where that is no border, the position is split, and fans that are joined
+// over paired sides keep one point each. Points of the wall come first, then those that rise, layer by layer. Counting
+// the cells of each column gives all their numbers. No position is changed here. Numbers follow the order of faces and
+// vertices, and do not depend on the number of threads.
 #include "products/cells/number_cells.h"
 
 #include <tbb/blocked_range.h>

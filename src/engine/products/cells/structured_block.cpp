@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes one structured block of the layers on a grid of quads. Quads are connected by welded vertices. The walk begins
+// at a corner of the grid, at its border if it has no corner, else anywhere, and there at the lowest vertex; it goes
+// from quad to quad over opposite sides, row by row. Each quad has to be met once, and each place of the grid has to
+// have one vertex: a grid that is not regular is refused, with the quad. A grid that is closed in a direction repeats
+// its first points as the last. If layers go inward, i and j change places, so that volumes are positive. Positions are
+// those of the stacks. inverted_cells() counts hexahedra that are not valid, and mends none.
 #include "vdb_offset/cells.h"
 
 #include <algorithm>

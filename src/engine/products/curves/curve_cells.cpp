@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Fills layers over curves with plane cells, measures these, and makes structured blocks. Points are numbered layer by
+// layer, one for each position that the curves use; a flat one has its number on the wall alone. Over each segment
+// stands a quadrilateral in each layer, a triangle where one end is flat, and nothing where both are. Cells run
+// counterclockwise, whichever side the layers are on. Edges that one cell has are collected on the way, in patches for
+// wall, outer side, and sides where curves end. A block takes the points of one curve that does not branch in their
+// order, and repeats the first one of a closed curve at its end. Layers are taken as they are: no position is judged or
+// changed.
 #include "vdb_offset/curve_offset.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures given positions as an offset of plane curves, wherever they come from. The source is joined in its plane, in
+// which all positions have to lie. If no distance is given, it is the median of those found, on the side that most
+// vertices of the line lie on. Faults are found by the class that limit_curves() works with. A point is reached at its
+// exact distance, mitred or cut at the end of its miter, and limited elsewhere; points that are too far away, on the
+// wrong side, or apart although they are one in the source are counted. Segments are measured between their ends. At a
+// distance of 0 all points count as reached. No point is moved here, and the farthest of the given distances holds for
+// all points.
 #include "vdb_offset/curve_offset.h"
 
 #include <tbb/task_arena.h>

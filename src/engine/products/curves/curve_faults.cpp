@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the faults of an offset of curves, and keeps them up to date as points move. Positions of some points go in;
+// for these their exact distances and sides are measured, and for the segments around them length, direction and
+// crossings are judged, all on coordinates as they will be written. A crossing counts if the source does not have it; a
+// new one close to one of the source has slid along, and is counted apart. If the source has more crossings than can be
+// listed, segments near one are not looked at for crossings. A move costs what the moved points and their segments
+// cost, and the counts are always those of the present positions. Threads write to places of their own. Nothing is
+// mended here.
 #include "products/curves/curve_faults.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes an offset of curves valid: paths of its points go in, and come back with positions, distances and states.
+// Points are first put in order along the front, and corners that this leaves alone go to the ends of their miters, but
+// for those with a fault there. Runs of faulty and short points are then spread over the front, with windows twice as
+// wide after each failure; a spread is undone if it has a fault. Whatever is still faulty goes back towards the source
+// by a share in each round, in the end altogether. Pulled points come out again one after the other, by bisection, and
+// none ends where it has a fault. Faults are judged on the very displacements that are handed back, rounded. No fault
+// is left that pulling back can remove; what crosses in the source itself is not mended.
 #include "products/curves/curve_limit.h"
 
 #include "ground/system/progress_count.h"

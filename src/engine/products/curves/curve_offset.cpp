@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Offsets plane curves by the stages that meshes go through: curves and sets of distances go in; positions, states and
+// figures of their points come out. The curves are joined in their plane and raised to a ribbon, whose field all
+// results share. One march leads the line half way up the ribbon to all distances. Each result is then made valid by
+// itself, or with Collision::Merge given those miters that add no fault, and measured between its points. Distances by
+// axis are measured in scaled space and scaled back. A point that does not move keeps its coordinates to the last bit;
+// where none is asked to move, no field is made. How curves become valid is in curve_limit.cpp.
 #include "vdb_offset/curve_offset.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Grows layers on plane curves: heights go in, stacks of positions for each point of the curves come out. One march
+// goes to the outermost heights. The curve there is made valid as an offset, with points that have crowded at corners
+// spread evenly. Then stack_curves() puts the other layers below it, and thins all layers of a point by one share where
+// cells would be invalid. Errors between the points are measured on the outermost layer and on the first. What has been
+// found for the line's vertices is handed out to the points of the curves that stand there; a point on no curve stays
+// where it is in all layers. Cells are not made here (see curve_cells.cpp).
 #include <algorithm>
 #include <numeric>
 #include <utility>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Puts points of an offset of curves back in the order of their curve, by isotonic regression. The points that have
+// arrived are sorted by where their closest points lie along the source, and around one corner by their direction: that
+// is the front as a line of points. A closed curve is cut open at the point that has strayed least along it. Pooling
+// adjacent violators finds the lengths along the front that keep the order and a least spacing, and move points least
+// in the sense of least squares. Only points of blocks of several move, each by projection onto its exact distance; one
+// that finds no position there stays. No fault is looked for here, and some may be left. Curves are handled one by one,
+// and blocks of one curve share nothing, so that the result does not depend on the number of threads.
 #include "products/curves/restore_order.h"
 
 #include <algorithm>

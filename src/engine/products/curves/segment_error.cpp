@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures how far the segments of an offset of curves are off their distance: positions and states of the line's
+// vertices go in, a FaceError comes out. Points stand at the middles of equal parts of the length of all segments, and
+// what is asked of one is interpolated between the ends of its segment. A point that is too far away may be off by no
+// more than its segment's own line is, as beside a miter. Where the mean error is above a hundredth, each point's error
+// goes to one cause, but for the part that comes of a lack of room; the shares of all causes sum up to one. Points are
+// measured in parallel and summed up in their order, so that the result does not depend on the number of threads.
+// Faults are not looked for here.
 #include "products/curves/segment_error.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Fills the leaf nodes that an iso-surface passes through. Cubes over the box of the source, widened by the distance,
+// are halved down to leaf nodes; one is dropped as soon as phi at its centre shows that the surface crosses no grid
+// edge there, since phi changes by no more than the way. Leaf nodes are halved on in the same manner: phi is exact at
+// all corners of grid edges that may be crossed, and extrapolated in cubes that the surface does not reach, where its
+// sign stays right. A ball without surface around a known point spares questions about the inside. Cubes that were left
+// out get their signs from the leaf nodes beside them. More leaf nodes than are allowed end the run before one is
+// filled. Leaf nodes are filled one by one, so that the result does not depend on the number of threads.
 #include "products/iso/iso_grid.h"
 
 #include "ground/system/progress_count.h"

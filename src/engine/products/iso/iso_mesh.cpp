@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the triangles of an iso-surface from its voxels. OpenVDB's volumeToMesh, which is dual marching cubes, gives a
+// vertex for each voxel that the surface passes through, and faces between them. Each vertex follows the gradient to
+// its exact distance as long as it stays in its voxel, and otherwise is found by bisection towards a voxel corner with
+// the other sign. Vertices then go onto creases (snap_to_creases.cpp), and quads are split along the shorter diagonal,
+// at a crease along the one whose middle is nearer to the surface. Vertices are projected in runs of a fixed length,
+// since an answer may depend on its hint: so the result does not depend on the number of threads. Faces that cross are
+// not mended here (see mend.cpp).
 #include "products/iso/iso_mesh.h"
 
 #include "ground/system/progress_count.h"

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Chooses the voxel size of an iso-surface, and estimates what the run takes. A size that is given stays. Otherwise it
+// is a quarter of the distance or the median edge, between bounds by the diagonal, at most half the distance where no
+// face may reach the source, and then coarser step by step until the estimate fits into memory. The leaf nodes are
+// estimated as the least of three bounds: the area at the distance times the thickness of a slab, the box around all,
+// and those counted within reach. Bytes and triangles follow from measured factors. A run is refused, with both
+// figures, if it does not fit, or if coordinates are rounded by more than two voxels. No grid is made here.
 #include "products/iso/iso_plan.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the surface at a distance from a mesh as a new mesh; the stages of products/iso in their order. The solid parts
+// of the source are found, the voxel size is chosen, and distances get a surface to be measured from. Then one lattice
+// after the other is tried: its voxels are filled, meshed and rounded as they will be written, specks are dropped,
+// faults are mended, and flat parts merged. The attempt counts if the mesh, as the file will have it, is closed,
+// manifold and without faults. After the last lattice the mesh is handed over with the faults that it has, and
+// statistics say so. In the end the distances of vertices and faces are measured. Attributes of the source come along
+// elsewhere (source_lookup.cpp).
 #include "vdb_offset/iso_surface.h"
 
 #include "ground/system/progress_count.h"

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Takes crossings and triangles without area out of a mesh. In a round, each faulty triangle has its corners tried at
+// positions on the surface, towards the middle of their neighbours and towards each neighbour, and then its edges
+// flipped; a change stays only if it leaves fewer faults, so that their number falls with each. If faults are left, the
+// longest edges of faulty triangles are split by new vertices on the surface, and another round begins. Mending ends
+// without faults, without anything to split, or after three rounds in a row that were no better than the best, which is
+// then the result. A mesh that is closed and manifold stays so. Faults are mended one after the other in the order of
+// triangles; those that are left are counted, and the caller decides about them.
 #include "products/iso/mend.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Takes vertices out of flat parts of a closed mesh by collapsing edges. A vertex may go if it and all neighbours lie
+// within a tolerance of one plane, or of two planes whose straight edge runs through it. It is merged into the
+// neighbour with which the thinnest triangle around is widest, unless a triangle would turn round or become too thin,
+// or the two have other common neighbours than those of their edge, so that the mesh stays manifold. Neighbours of what
+// has gone are tried again until nothing goes any more. merge_flats_soundly() looks for crossings after that, and
+// starts over with vertices around them held, in rings twice as wide each time; if that does not help, the mesh stays
+// as it was. No vertex that is left has moved. Meshes with next to nothing flat are left alone.
 #include "products/iso/merge_flats.h"
 
 #include <algorithm>

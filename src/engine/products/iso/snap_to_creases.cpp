@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Puts vertices of a new iso-surface onto its creases and corners. The sheets at a vertex are those that it and its
+// neighbours are closest to: the second is the one whose gradient turns away most, the third the one that spans the
+// largest volume with both. Newton's method goes by shortest steps to a point with the distance to all of them, and
+// walks over each sheet on the way; three sheets are tried first, then two. A point counts in the vertex's own voxel,
+// or within a voxel of it where voxels were merged, and only if no other surface is nearer. All places are found before
+// any vertex moves, so that the result does not depend on the number of threads. Faces are not changed here. Kobbelt et
+// al. (2001) extract such features with tangent planes instead of sheets.
 #include "products/iso/snap_to_creases.h"
 
 #include <openvdb/math/Mat3.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the boundary of what is inside of a surface whose solids overlap or lie in each other. Triangles that meet no
+// other form patches over their edges, and a patch is buried if the middle of its largest triangle has the inside on
+// both sides. A triangle that meets others is cut along the shared segments into convex parts, by a binary tree of
+// lines in its plane, and each part is judged by its middle. Holes that are to be filled get a fan of triangles around
+// their centre. A triangle stays whole if none of its parts is buried, and there is no result if all of the surface is
+// boundary and no hole is filled. Cuts are rounded, and parts do not fit together at their edges: the result is for
+// distances alone, and no mesh to write.
 #include "products/iso/solid_boundary.h"
 
 #include <algorithm>

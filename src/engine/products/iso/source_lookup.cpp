@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the points of the source that an iso-surface takes its attributes from. A vertex takes those of its closest
+// point, with barycentric weights that are exactly 0 off the feature that this lies on. A triangle takes those of the
+// face that is closest to its centre. If the source is cut into charts (triangles that share an edge and the values at
+// both of its ends), a corner whose closest point is in another chart than its triangle's walks over the triangle's
+// chart, as long as a triangle with a common corner is nearer: so no seam runs inside of a triangle. That walk ends at
+// a local minimum, and does not search the whole chart. Values are looked up and interpolated elsewhere
+// (files/derived).
 #include "products/iso/source_lookup.h"
 
 #include <algorithm>

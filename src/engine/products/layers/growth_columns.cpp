@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Decides which columns of cells stand on the faces of a wall, and whether their cells are valid. A face with an area
+// carries one column, over its positions; a quad with a corner that is straight or turns inwards carries two, split so
+// that the smaller triangle is as large as it can be. A column of prisms is valid if at each corner the edge up leans
+// towards the normals below and above it, if the Jacobian, a quadratic polynomial along that edge, stays above 0, and
+// if the volume is positive; two columns are judged at once in vector lanes. Any other column has to rise at its
+// corners, too, and its cells are made and measured as for the report. With CellRules::OpenFoam the pyramids of
+// OpenFOAM count as well. Positions are judged as they are: nothing is moved or thinned here.
 #include "products/layers/growth_columns.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Grows layers over a wall, of a surface or of curves alike: paths go in, stacks of layers come out in which all cells
+// are valid and the outermost surface has no fault, as far as thinning can reach that. Each vertex gets a rail, bent to
+// leave the wall in the vertex's own direction if that leads away from all faces around, else straight. Rails at
+// invalid cells are straightened. Then vertices at faults and invalid cells are thinned round by round, at last to no
+// height; those that were thinned too far are let out by small steps, and a step that makes a fault is undone. All
+// layers of a vertex keep one share of their heights, and no thickness differs from a neighbour's by more than half of
+// the edge between them. Where layers stand, and what is valid, is up to the wall (layer_wall.h).
 #include "products/layers/layer_grower.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Puts layers over a surface for the grower (layer_grower.cpp), at exact distances. The layers of a vertex stand on its
+// rail, and are found on the way down from height to height, in the first of three ways that is known to be right. The
+// vertex's own fan of triangles is enough if the empty ball at the end of its path leaves nothing nearer beside it. The
+// triangles in a ball around the rail come next, collected for many vertices at once; then an exact query for each
+// step. Border vertices that slide go where the border leads them at each height. Each vertex is put by itself, so that
+// the result does not depend on the number of threads. What is thinned, and by how much, is not decided here. After
+// that, layers are rounded to what a file keeps and measured again, and what was held back is counted.
 #include "products/layers/surface_layer_grower.h"
 
 #include "ground/system/progress_count.h"

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures given positions as an offset of a mesh, wherever they come from. The mesh is sorted into parts as for an
+// offset; without a given distance, the median of those found is taken, on the side that most vertices lie on. Miters
+// and the ends of sliding borders are found anew. Each vertex is judged by its exact distance: reached, at the end of a
+// miter, on the moved planes beside one, or limited. Faults are those that offset() looks for, by the class that finds
+// them there. Faces are measured between their vertices, and with a tolerance proofs are made of all of their points.
+// No field is made and nothing is moved, so that the verdict rests on the source, the positions and the options alone.
+// The result does not depend on the number of threads.
 #include "vdb_offset/offset.h"
 
 #include <tbb/task_arena.h>

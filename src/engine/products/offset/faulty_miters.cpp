@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Takes miters back that come with faults. Those that give way are set aside first. Of each fault's mitred corners, the
+// ones with the least area around them go back to their paths, until no fault has a mitred corner. With round corners
+// all miters near a remaining fault are given up for good, as those do not come of miters. Since miters may have been
+// in each other's way alone, the others are tried again in rounds, a third of them at a time, and few are tried one by
+// one; whichever comes to be at a fault goes back. Those set aside are tried last. Which ones go together follows from
+// a hash of their numbers, and not from threads. Faults that come of no miter are left to limit().
 #include "products/offset/faulty_miters.h"
 
 #include <algorithm>

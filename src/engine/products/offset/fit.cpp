@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes room between two meshes by rounds of offsets inward: flat faces and vertices go farther by what they still
+// lack. The round with the fewest triangles too near is the result; rounds end if none is, or if they get no better.
 #include "vdb_offset/offset.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sorts a surface into the parts that give way together in a fit. Flood fills over edges find two kinds of regions:
+// triangles between sharp edges, and in these the triangles that lie in the plane of their region's first one. A flat
+// region is a face of its own if it is at least four times as large as any flat region that is smoothly joined to it.
+// All corners on such a face are one part; elsewhere each vertex is a part by itself in each region between sharp
+// edges, so that one side of a sharp edge can go without the other. Triangles that may not give way are in no part.
+// Numbers follow the order of triangles. How far a part goes is decided in fit.cpp.
 #include "products/offset/fit_parts.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Grows layers on a mesh: heights go in, stacks of positions for each vertex of the input come out. One march goes to
+// the outermost heights. Miters with faults are taken back there, and folds are untangled, but nothing is pulled back
+// yet. The columns of cells are set on the faces, and stack_layers() puts all other layers in between and thins them
+// until cells and the outermost surface are valid. Layers are then rounded to what the file keeps, and distances and
+// errors are measured on that. Vertices that are welded share one stack, but for those that stand elsewhere or are in
+// no face. Cells are not made here (see products/cells), and distances by axis are refused.
 #include <algorithm>
 #include <optional>
 #include <utility>

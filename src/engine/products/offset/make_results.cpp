@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the results of a run from the paths of its vertices. Each result begins as a draft: faults at the ends of its
+// paths are found, miters that cause some are taken back, limit() makes the rest valid, and positions are handed out to
+// the vertices of the input, and measured as they will be written. The inner skin of a shell comes first, and all
+// others keep off it. A nearer offset that has to be mended starts from the finished farther one, which therefore goes
+// before. A few results are made at the same time; each depends on its own draft and on those two alone, so that
+// neither their order nor the number of threads counts. With distances by axis, positions return to the file's space at
+// the end. Without Collision::Limit only faults of miters are taken back, and all others stay.
 #include "products/offset/make_results.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Prepares a mesh for all results of a run, and finds the paths of its vertices. Faces are sorted into what moves, what
+// stays and obstacles; if a vertex moves, the grid is planned within the memory allowed, the mesh goes into its local
+// frame, and the field is made. march() leads the moving part's vertices through the directions, has borders slide and
+// obstacles hold what touches them, and finds miters. marched_to() needs no field, and puts vertices to given targets.
+// Paths are those of all vertices; what is not on the moving part stays, and has reached what it was asked. The other
+// functions collect what a result must keep to, and what became of borders. Faults are not looked for here.
 #include "products/offset/prepared_mesh.h"
 
 #include <algorithm>

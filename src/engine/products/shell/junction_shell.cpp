@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes a shell of sheets that meet at junctions. Two valid skins and the marks of junctions go in. Each wedge at a
+// junction gets a vertex: the two of the skins come first, and further ones follow as splits. Wedges near junctions
+// move to where wedge_positions.cpp wants them. A quad of the rim stands on each gap between sides; where quads that
+// meet at a junction do not end on each other, the hole between them is triangulated. Corners of faces that fold or
+// cross others then go back by a share in each round, to their skin or, at a junction, to the mesh. Those beside
+// junctions are let out together once more, and return where that is faulty. If the rounds run out, faults are left.
+// Crossings near those of the mesh are not mended.
 #include "products/shell/junction_shell.h"
 
 #include <algorithm>

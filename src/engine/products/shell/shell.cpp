@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Joins a mesh and its offset, or two offsets, into one solid. The outer skin has the mesh's faces, the inner skin the
+// faces turned round, and each border edge gets a quad that runs against its face; the quad becomes a triangle where
+// the skins touch at one end, and nothing where they touch at both. Each moved vertex goes to the skin that the sign of
+// its distance stands for, and stays in the mesh on the other one. Where sheets meet or faces were turned,
+// junction_shell.cpp gives wedges corners of their own; if that is not closed and oriented, both skins run on through
+// the junctions instead. Vertices keep their numbers, and faces their order. Skins are taken as they come and not made
+// valid; what touches or crosses is counted (shell_facts.cpp).
 #include "vdb_offset/shell.h"
 
 #include <algorithm>

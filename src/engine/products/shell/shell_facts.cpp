@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures a shell on the coordinates that will be written. It is closed if each edge, by position, has an even number
+// of faces, and oriented if as many of these run one way as the other. The volume is summed up over its triangles by
+// the divergence theorem, from a corner of the shell. A vertex is pinched where the corners of an outer and an inner
+// face are at one position. Triangles that meet are the source's own if no corner has moved, are counted apart within
+// two rings of where the source crosses itself, and are crossings of the shell elsewhere. Triangles of both skins are
+// those of the mesh's faces, so that both are split alike. Nothing is moved or mended here; the rim's faces are counted
+// in shell.cpp and junction_shell.cpp.
 #include "products/shell/shell_facts.h"
 
 #include <algorithm>

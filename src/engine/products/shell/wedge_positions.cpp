@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds where the corners of wedges belong near junctions of sheets. Dijkstra's algorithm measures how far each wedge
+// is from a junction, along edges and in thicknesses. A wedge within reach, or anywhere on a flat sheet that ends at a
+// junction, goes by the shortest displacement to the least-squares point of its sides' planes, each moved by its
+// thickness, and no farther than four thicknesses. The displacements of junctions and of creases on such sheets spread
+// over the sheets around by Gauss-Seidel relaxation; of what arrives, a wedge takes the part along its own planes, and
+// at the border that along the border. The weight of a position falls to 0 with the distance from the junction. Faults
+// are not looked for here.
 #include "products/shell/wedge_positions.h"
 
 #include <openvdb/math/Mat3.h>

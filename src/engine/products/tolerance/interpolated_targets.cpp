@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds where vertices go that were added to a mesh for a tolerance; so the parameterization of the source is
+// transported to its offset (Wang et al., AIAA 2005). beside() starts between two vertices of the offset: near a miter
+// at the point on the moved planes of the place's faces, elsewhere by pushing the point out of all that is too near, in
+// a valley beyond the planes that were met last. A vertex that is held in planes moves within these. along() follows
+// the interpolated displacement of the surface's vertices to the first point at the distance, by steps that are exact
+// for what is closest. A target counts only if it lies before its own faces, is the first point at the distance on its
+// way, and keeps the clearance; otherwise the vertex is not there. No face is judged here.
 #include "products/tolerance/interpolated_targets.h"
 
 #include <algorithm>

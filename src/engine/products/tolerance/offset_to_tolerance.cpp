@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Offsets a mesh with its faces split until all points of them are proven to be at the distance. The mesh is offset as
+// it is first, and its vertices keep the targets that they reach there. Then faces are split in stages with ever
+// tighter tolerances, round by round; after each round, triangles whose pieces would be faulty are kept whole and the
+// round is done again. Rounds end when they gain little, or when the limit of faces is met. The refined mesh is offset
+// to its targets and made valid like any other, and certified on its coordinates as written against the source before
+// splitting. Small triangles that cross others in the source, and edges of faces that are lines, are not split. Shells,
+// fields, paths and distances by axis are refused.
 #include "vdb_offset/offset.h"
 
 #include <fmt/format.h>

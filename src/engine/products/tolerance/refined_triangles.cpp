@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps the triangles of a surface while their edges are split at the middles, and makes a mesh with faces of them. A
+// triangle with one, two or three split edges becomes two, three or four; with two, the quad that is left is divided
+// along its shorter diagonal. Both triangles at an edge see one list of split edges, so that all triangles meet edge to
+// edge. Of each added vertex is kept in which shares it lies between vertices of the surface. of_mesh() puts the pieces
+// of a face in its place, running as the face does, also for faces that repeat it; a face that is not split keeps its
+// corners. Vertices of the source keep their numbers, and added ones follow, one for each set of input vertices that
+// they lie between. Which edges are split, and where vertices go, is decided elsewhere (refiner.cpp).
 #include "products/tolerance/refined_triangles.h"
 
 #include <tbb/parallel_sort.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Chooses which edges of a mesh are split until its offset is proven to be within a tolerance. In a round, each new
+// triangle is proven, found to be off, found to have a vertex that does not get there, or given up. The middles of its
+// edges become candidates, each with the place where it would go and how far the edge bulges from there. Of a triangle
+// that is off, edges that bulge by most of the tolerance are split, or else its longest one if that may gain anything.
+// Of one with a short vertex, an edge is split if its middle gets there, down to a least length. Beyond the limit of
+// faces the edges that bulge least stay. A round can be undone, and done again with faulty triangles whole. Candidates
+// are sorted by edge and judged each by itself, so that no choice depends on threads. Offsets are not made valid here.
 #include "products/tolerance/refiner.h"
 
 #include <tbb/parallel_sort.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures cells: scaled Jacobian, aspect ratio, volume, and the angle at the wall. The scaled Jacobian is the least
+// triple product of unit edge vectors over the corners, as in Verdict, and 1 for a regular cell; of prisms and
+// hexahedra squares with a sign are compared, and one root is taken at the end. Pyramids have that of their worst
+// tetrahedron, polyhedra that of a prism over a polygon, and plane cells the least sine of a corner. Volumes are sums
+// over faces, each a fan from its corner of the lowest number, so that cells on both sides agree on a bent face. The
+// volume of all cells is summed up over the boundary, in blocks of a fixed size that are added in order. Cells are
+// measured as they are; what is invalid is decided elsewhere.
 #include "products/volume/cell_quality.h"
 
 #include <algorithm>

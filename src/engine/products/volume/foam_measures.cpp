@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures a volume mesh as OpenFOAM's checkMesh does: faces oriented wrongly, non-orthogonality and skewness. A face's
+// centre and area come from the triangles around the mean of its corners, and a cell's centre from the pyramids over
+// its faces. A face is wrong if such a pyramid has no positive volume, by more than rounding. Non-orthogonality is the
+// angle between a face's area vector and the line between the centres on both sides, skewness the distance of its
+// centre from that line as a share of its size; at the boundary the line is the normal. Sums are made over blocks of a
+// fixed size, added in order, so that the result does not depend on the number of threads. Other checks of checkMesh
+// are not made here.
 #include "products/volume/foam_measures.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Matches the faces of a volume mesh: for each face of each cell the cell behind it comes out. Sides of cells are
+// sorted by the lowest point of their face in parallel, and the sides at one point by their other corners; two with
+// equal corners are one face between two cells. A face that three cells share, or one cell has twice, is refused, and
+// so are patches that do not hold each face without a second cell exactly once. Threads may list the sides at a point
+// in any order, but sorting settles it: the result does not depend on them. Faces are equal by their corners, whichever
+// way these run; that neighbours run in opposite directions is not checked here.
 #include "products/volume/volume_faces.h"
 
 #include <fmt/format.h>

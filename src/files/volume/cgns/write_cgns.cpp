@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes cells as a CGNS file, through the library of that name: one base and one zone with coordinates, elements,
+// boundary conditions and fields. Without polyhedra, cells have a section for each type, and the faces of each patch
+// sections for triangles and quads. With a polyhedron among them, all cells are lists of faces: faces between cells
+// come first, each once, then those of the patches, and a cell names a face with a minus sign if its normal points into
+// the cell. Fields of cells follow the order of the elements. The room that the file can take is reserved on the disk
+// before, as the library below cannot close a file that did not fit. Whatever the library reports becomes an error with
+// the file's name.
 #include <cgnslib.h>
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Takes the faces out of a data set that VTK has read, and believes nothing of it: offsets of cells have to rise within
+// their corners, corners have to be points that are there, each cell needs a type, and positions have to be finite. Of
+// polygons the faces come first and then the triangles of strips; of a grid all cells come in their order. Every other
+// triangle of a strip is turned round, and the corners of pixels are put in order around them. Points and lines are
+// counted and passed over; cells of any other type, as solids and curved faces, are refused with their number. For each
+// face the number of its cell is kept, as names of faces are found by it. Points that no face uses stay.
 #include "vtk/module/vtk_cells.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps a data set of VTK's with all its arrays, to write the file again with other positions. If nothing has moved,
+// the file keeps all of its bytes. A legacy file has numbers replaced where they stand; only if they are not found
+// there it becomes a new binary file, and its layout is named as lost. An XML file is written by VTK as it was made: as
+// text, binary or appended, with its byte order and compressor. All arrays other than points and normals pass through
+// as they are. For other formats, normals, texture coordinates and colours are taken from point arrays, and names of
+// faces from cell arrays under the names that programs use. What VTK complains of becomes an error with the file's
+// name.
 #include "vtk/module/vtk_document.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads how a file of VTK's is made, and refuses counts that its bytes cannot back, before VTK's own readers see the
+// file: these make room for whatever a file promises. Of XML it takes the attributes of the first tag and how arrays
+// are stored, and bounds all numbers of things by the size of the file, by more if the file is compressed. Of a legacy
+// file it takes the lines that say ASCII or BINARY and the kind of the data set, and bounds the numbers in lines that
+// begin with a keyword or describe an array. The text is searched as it stands, without a parser. Only surfaces and
+// unstructured grids are let through. Everything else about the file is left to VTK's readers and to vtk_cells.cpp.
 #include "vtk/module/vtk_header.h"
 
 #include <fmt/format.h>
