@@ -62,8 +62,8 @@ struct FaceDistances {
 /// closest point of its edge has the weight S(1 - s / blend) beside the vertex's own part with a weight of 1, where S
 /// rises from 0 to 1 with two derivatives of 0 at both ends: on the edge both count the same, and beyond `blend` only
 /// the own. Where parts, or pieces, meet at a vertex, it has their mean, and corners their own (Distances::at_corner())
-/// but where they are joined. Vertices at one position have the same. 	hrow InvalidInput if there is not a distance for
-/// each corner, or not a part for each face
+/// but where they are joined. Vertices at one position have the same. \throw InvalidInput if there is not a distance
+/// for each corner, or not a part for each face
 VDB_OFFSET_API Distances vertex_distances(PolygonView mesh, const FaceDistances& faces);
 
 /// How lengths count along the axes: distances are those of a space in which coordinates are so many times as large.

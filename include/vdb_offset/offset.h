@@ -46,9 +46,10 @@ VDB_OFFSET_API OffsetStatistics plan_several(PolygonView mesh, std::span<const D
 /// Each round is an offset in which flat faces, and the vertices of curved ones, go inward by what they lack: the
 /// nearest point of a triangle that is too near is a weighted mean of its corners, and each corner goes farther by its
 /// weight. Where several faces meet, those go for which that helps. How much the gap grows tells how far to go in the
-/// next round. Rounds end when nothing is too near, or the gap no longer grows: where the mesh is too thin, or inward
-/// does not lead away from the other mesh. The best round is the result; its `distances` are those that were needed,
-/// and its `statistics.fit` tells the gap that is left.
+/// next round. Rounds end when nothing is too near, or when the best one has not been bettered for some: where the mesh
+/// is too thin, or inward does not lead away from the other mesh. The best round, with the fewest triangles too near
+/// and then the widest gap, is the result; its `distances` are those that were needed, and its `statistics.fit` has the
+/// gap that is left.
 ///
 /// Of the options, `distance`, `corners`, `obstacles`, `clearance`, `metric` and those of shells have no effect. \throw
 /// InvalidInput as offset(), and for a clearance that is not above 0 or another mesh without faces.

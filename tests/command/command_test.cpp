@@ -848,6 +848,14 @@ TEST_CASE("command: curves are offset, reported, and refuse what is for meshes",
   CHECK(shell("square.dat lines.obj --distance 10% -q").code == 0);
   CHECK(shell("lines.obj back.txt --distance '-0.1*(1 + nx*nx)' -q").code == 0);
   CHECK(shell("square.dat none.dat --distance 1 --dry-run").code == 0);
+  // A check takes uneven distances as an offset does.
+  for (const char* const uneven : {"--distance '0.1 + 0.05*x'", "--distance-from each.txt"}) {
+    std::ofstream(shell.file("each.txt")) << "0.1 0.2 0.2 0.1 0.1\n";
+    const std::string distance = std::string(" ") + uneven;
+    CHECK(shell("square.dat uneven.txt -q" + distance).code == 0);
+    CHECK(shell("check square.dat uneven.txt --strict" + distance).code == 0);
+    CHECK(shell("check square.dat uneven.txt --strict --distance 0.1").code == 3);
+  }
   for (const char* const wrong : {"none.ply", "none.dat --only group=a", "none.dat --shell", "none.dat --mode iso"}) {
     const Run refused = shell(std::string("square.dat ") + wrong + " --distance 1");
     CHECK(refused.code == 1);

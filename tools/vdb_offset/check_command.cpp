@@ -166,8 +166,8 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   return request;
 }
 
-/// Reads the distances for meshes, which may be expressions or files.
-void take_distances_of_meshes(CheckRequest& request) {
+/// Reads the distances, which may be expressions or files.
+void take_distances(CheckRequest& request) {
   Request& made = request.made;
   if (!request.distance.empty()) made.distances.push_back(parse_distance_of("--distance", request.distance, made));
   if (!request.distance_from.empty()) made.distances.push_back(parse_distance_from(request.distance_from, made));
@@ -214,19 +214,9 @@ io::InTriangles find_in_offset(const Request& made, const io::MeshFile& source_f
                       : ""));
 }
 
-std::optional<double> given_distance(const std::string& text, PolygonView source) {
-  if (text.empty()) return std::nullopt;
-  try {
-    const GivenDistance distance = parse_distance(text);
-    return distance.in_world_units(distance.percent ? used_diagonal(source) : 0);
-  } catch (const InvalidInput& error) {
-    throw UsageError(std::string("--") + error.what());
-  }
-}
-
 /// \throw InvalidInput unless both have the same points. A curve that is closed in one of them may be open in the
 /// other.
-void require_same_points(const Request& made, const Curves& source, const Curves& offset) {
+void require_same_points(const Request& made, CurvesView source, CurvesView offset) {
   if (source.positions.size() != offset.positions.size())
     throw InvalidInput(fmt::format("{}: expected the points of {} ({}), found {}", made.output, made.input,
                                    source.positions.size(), offset.positions.size()));
@@ -286,10 +276,10 @@ void write_findings(const Request& made, PolygonView source, std::span<const Vec
 
 CheckResult measure_curves(const CheckRequest& request) {
   const Request& made = request.made;
+  const Source source = read_source(made, true);
   io::CurveReading how = curve_reading(made);
-  io::CurveFile source = io::read_curves(made.input, how);
   // Shapes that did not move are curved in the offset as well, and get the same points.
-  if (source.flattened_shapes > 0) how = {0, source.flattened_to};
+  if (source.curves->flattened_shapes > 0) how = {0, source.curves->flattened_to};
   const io::CurveFile offset = io::read_curves(made.output, how);
   for (const auto& [name, given] : {std::pair{"--weld", made.weld_text != "auto"},
                                     {"--orient", made.orient_text != "keep"},
@@ -297,19 +287,19 @@ CheckResult measure_curves(const CheckRequest& request) {
                                     {"--distance-of", !made.distances_of.empty()},
                                     {"--obstacle", !made.obstacles.empty()},
                                     {"--symmetry", !made.symmetry_texts.empty()},
-                                    {"--tolerance", made.tolerance.has_value()},
-                                    {"--distance-from", !request.distance_from.empty()}})
+                                    {"--tolerance", made.tolerance.has_value()}})
     if (given) throw UsageError(fmt::format("{}: expected meshes, as this is not for curves", name));
-  if (made.close) close_curves(source.file.polygons);
-  require_same_points(made, source.file.polygons, offset.file.polygons);
+  const CurvesView curves = source.view();
+  require_same_points(made, curves, offset.file.polygons.view());
+  const Job job = resolve_options(made, source);
   CheckOptions options;
   options.threads = made.threads;
-  options.corners = made.corners.value_or(Corners::Round);
-  options.miter_limit = made.miter_limit.value_or(options.miter_limit);
-  options.precision = io::precision_of_curves(made.output, source, made.write);
-  if (const auto distance = given_distance(request.distance, source.file.polygons.view())) options.distance = *distance;
-  CheckResult result = check_curves(source.file.polygons.view(), offset.file.polygons.positions, options);
-  write_findings(made, source.file.polygons.view(), offset.file.polygons.positions, result, {{}, nullptr, true});
+  options.corners = job.options.corners;
+  options.miter_limit = job.options.miter_limit;
+  options.precision = io::precision_of_curves(made.output, *source.curves, made.write);
+  if (!job.distances.empty()) options.distance = job.distances.front();
+  CheckResult result = check_curves(curves, offset.file.polygons.positions, options);
+  write_findings(made, curves, offset.file.polygons.positions, result, {{}, nullptr, true});
   return result;
 }
 
@@ -372,7 +362,7 @@ int run_check(int argc, const char* const* argv) {
   tell_of_lost_input(made.input);
   const bool curves = holds_curves(made.input);
   if (curves && request->axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
-  if (!curves) take_distances_of_meshes(*request);
+  take_distances(*request);
   require_outputs_apart(*request);
   for (const std::string& path : {made.report, made.states, made.html})
     if (!path.empty()) require_writable(path);

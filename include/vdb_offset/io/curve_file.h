@@ -43,8 +43,8 @@ struct CurveFile {
   CurveFormat format = CurveFormat::Text;
   MeshFile file;                          ///< Its polygons are the curves.
   bool planar = false;                    ///< Points have two coordinates.
-  std::shared_ptr<const SvgDrawing> svg;  ///< Of a drawing: where the curves stand in the file.
-  std::shared_ptr<const DxfDrawing> dxf;  ///< The same of a DXF file.
+  std::shared_ptr<const SvgDrawing> svg;  ///< Of an SVG drawing: where the curves stand in the file.
+  std::shared_ptr<const DxfDrawing> dxf;  ///< Of a DXF drawing, likewise.
   std::size_t flattened_shapes = 0;       ///< Shapes of a drawing with curved segments, which are straight ones here,
   double flattened_to = 0;                ///< no farther than this from them, world units.
 };

@@ -29,8 +29,9 @@ struct PlacedFaces {
 };
 
 /// Computes those normals of the file that a corner of a face names of which a vertex moved: the sum, over the corners
-/// that name a normal, of the corner's face normal times its angle. Vertices of a document that had the same position
-/// and the same normal name the same. Computed from positions as they are written.
+/// that name a normal, of the corner's face normal times its angle. Of documents that are no rows
+/// (glTF, VTK), vertices that had one position and one normal name one normal. Computed from positions as they are
+/// written.
 NewNormals new_normals(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                        const PlacedFaces& placed = {});
 

@@ -70,6 +70,29 @@ TEST_CASE("curve check: what a run makes is valid, and at its distance", "[curve
   }
 }
 
+TEST_CASE("curve check: each point is judged at its own distance", "[curves][check]") {
+  const Curves curves = l_shape();
+  std::vector<double> each;
+  for (const Vec3d& p : curves.positions) each.push_back(0.1 + 0.05 * p[0]);
+  const Distances distances(each);
+  const OffsetResult result = offset_curves(curves.view(), {&distances, 1}, {}).front();
+  CheckOptions options;
+  options.distance = distances;
+  const CheckResult found = check_curves(curves.view(), result.positions, options);
+  CHECK(found.valid());
+  CHECK(found.beyond == 0);
+  CHECK(found.distance == Approx(0.2));
+  CHECK(found.states == result.states);
+  CHECK(found.faces.mean == Approx(result.statistics.faces.mean));
+  // A point that is where another one should be is off its own distance.
+  std::vector<Vec3d> positions = result.positions;
+  positions[5] -= Vec3d(0, 0.01, 0);
+  CHECK(check_curves(curves.view(), positions, options).states[5] == VertexState::Limited);
+  options.distance = Distances(std::vector<double>{0.1, 0.2});
+  CHECK_THROWS_WITH(check_curves(curves.view(), positions, options),
+                    Catch::Contains("a distance for each of 80 points"));
+}
+
 TEST_CASE("curve check: each fault is found", "[curves][check]") {
   const Curves curves = l_shape();
   const std::vector<Vec3d> good = offset_by(curves, 0.05).positions;

@@ -3,9 +3,8 @@
 // which all positions have to lie. If no distance is given, it is the median of those found, on the side that most
 // vertices of the line lie on. Faults are found by the class that limit_curves() works with. A point is reached at its
 // exact distance, mitred or cut at the end of its miter, and limited elsewhere; points that are too far away, on the
-// wrong side, or apart although they are one in the source are counted. Segments are measured between their ends. At a
-// distance of 0 all points count as reached. No point is moved here, and the farthest of the given distances holds for
-// all points.
+// wrong side, or apart although they are one in the source are counted. Segments are measured between their ends. Where
+// all distances are 0, all points count as reached. No point is moved here.
 #include "vdb_offset/curve_offset.h"
 
 #include <tbb/task_arena.h>
@@ -15,6 +14,7 @@
 #include <numeric>
 #include <string>
 
+#include "ground/distances/mean_distances.h"
 #include "ground/numbers/median.h"
 #include "ground/numbers/rounding.h"
 #include "ground/system/parallel.h"
@@ -27,17 +27,20 @@
 namespace vdb_offset {
 namespace {
 
-// The largest distance of an offset's points from the plane of the curves, as a share of their extent. plane_of() takes
-// 1e-9 for the source; files of offsets may keep fewer digits. Not measured.
+// The largest distance of an offset's points from the plane of the curves, as a share of their extent. As for
+// the source (space/curve/ribbon.cpp). Not measured.
 constexpr double kFlatCurve = 1e-6;
 
-void require_usable(CurvesView source, std::span<const Vec3d> positions) {
+void require_usable(CurvesView source, std::span<const Vec3d> positions, const std::optional<Distances>& distance) {
   if (positions.size() != source.positions.size())
     throw InvalidInput("check: expected as many points as the source's " + std::to_string(source.positions.size()) +
                        ", found " + std::to_string(positions.size()));
   for (std::size_t p = 0; p < positions.size(); ++p)
     if (!positions[p].isFinite())
       throw InvalidInput("check: point " + std::to_string(p) + ": expected finite coordinates");
+  if (distance && !distance->uniform() && distance->count() != positions.size())
+    throw InvalidInput("check: expected a distance for each of " + std::to_string(positions.size()) + " points, got " +
+                       std::to_string(distance->count()));
 }
 
 class CurveChecker {
@@ -54,12 +57,12 @@ class CurveChecker {
 
   void run() {
     Progress progress(options_.progress, Stage::Measure, 3);  // of three steps
-    result_.distance = options_.distance ? options_.distance->farthest() : find_distance();
-    result_.distances = Distances(result_.distance);
+    result_.distances = options_.distance ? options_.distance->of_vertices() : Distances(find_distance());
+    result_.distance = result_.distances.farthest();
     for (std::size_t p = 0; p < drawn_.vertex.size(); ++p)
       if (drawn_.vertex[p] != kNone) result_.states[p] = VertexState::Reached;
     if (result_.distance == 0) return;
-    const Distances distances(result_.distance);
+    const Distances distances = distances_of_line();
     std::vector<Miter> miters;
     if (options_.corners == Corners::Miter)
       miters = MiterFinder<CurveQuery>(query_, Corners::Miter, options_.miter_limit, nullptr).all(distances);
@@ -104,6 +107,15 @@ class CurveChecker {
     }
   }
 
+  /// As an offset has them: the mean where points at one position differ.
+  Distances distances_of_line() const {
+    if (result_.distances.uniform()) return result_.distances;
+    std::vector<std::uint32_t> first(positions_.size(), kNone);
+    for (std::uint32_t p = 0; p < drawn_.vertex.size(); ++p)
+      if (drawn_.vertex[p] != kNone && plane_.chains.welded_to[p] == p) first[drawn_.vertex[p]] = p;
+    return Distances(mean_distances(result_.distances, drawn_.vertex, first).each);
+  }
+
   Closest closest_to(const Vec2d& position, std::uint32_t vertex) const {
     return query_(Vec3d(position[0], position[1], 0), drawn_.line.triangles_around(vertex).front());
   }
@@ -122,11 +134,11 @@ class CurveChecker {
   }
 
   void judge_points(const PlaneCurves& curves, const CurveFaults& faults) {
-    const double target = std::abs(result_.distance), epsilon = Rounding(options_.precision).epsilon();
+    const double epsilon = Rounding(options_.precision).epsilon();
     for (std::size_t p = 0; p < drawn_.vertex.size(); ++p) {
       const std::uint32_t v = drawn_.vertex[p];
       if (v == kNone) continue;
-      const double distance = faults.distance_of(v), error = distance - target,
+      const double target = std::abs(curves.distances[v]), distance = faults.distance_of(v), error = distance - target,
                    tolerance = kReachedTolerance * target + epsilon * positions_[v].length();
       result_.achieved[p] = distance;
       const Miter* const miter = curves.miter_of(v);
@@ -152,7 +164,7 @@ class CurveChecker {
 }  // namespace
 
 CheckResult check_curves(CurvesView source, std::span<const Vec3d> positions, const CheckOptions& options) {
-  require_usable(source, positions);
+  require_usable(source, positions, options.distance);
   CheckResult result;
   result.states.assign(positions.size(), VertexState::Unused);
   result.achieved.assign(positions.size(), 0.0);

@@ -30,7 +30,7 @@ constexpr std::size_t kMostPoints = 40000, kMostOfSegment = 65;
 // Share of the farthest distance below which a point counts as asked to stay. Reasoned: errors are relative.
 constexpr double kLeastMeasured = 1e-3;
 
-/// A point on the offset, and what is asked there.
+/// A point on the offset.
 struct SegmentSample {
   std::uint32_t segment;
   double share;  // of the way from its first end to its second

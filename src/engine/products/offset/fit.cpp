@@ -316,7 +316,7 @@ class Fitting {
     return sides;
   }
 
-  /// The same at a vertex, found once a round: of a fan, all triangles may be nearest there.
+  /// What sides_at() finds at a vertex, once a round: of a fan, all triangles may be nearest there.
   const std::map<std::uint32_t, double>& sides_at_vertex(std::uint32_t w) {
     const auto [known, is_new] = at_vertex_.try_emplace(w);
     if (is_new) known->second = sides_at(positions_[w], vertex_gap_[w], w, surface_.triangles_around(w));
