@@ -30,7 +30,7 @@ VDB_OFFSET_API std::vector<OffsetResult> offset_curves(CurvesView curves, std::s
 VDB_OFFSET_API LayersResult grow_curve_layers(CurvesView curves, std::span<const Distances> heights,
                                               const OffsetOptions& options);
 
-/// Tells what offset_curves() would do, or grow_curve_layers() if there are layers, without doing it. \throw as
+/// Plans what offset_curves() would do, or grow_curve_layers() if there are layers, without doing it. \throw as
 /// offset_curves()
 VDB_OFFSET_API OffsetStatistics plan_curves(CurvesView curves, std::span<const Distances> distances,
                                             const OffsetOptions& options, std::size_t layers = 0);

@@ -123,7 +123,7 @@ class VDB_OFFSET_API DistanceExpression {
 };
 
 /// A distance as users write it: world units ("0.1"), or a share of the bounding-box diagonal of the vertices in
-/// use ("1.5%"); or an expression that tells each vertex its own.
+/// use ("1.5%"); or an expression that gives each vertex its own.
 struct VDB_OFFSET_API GivenDistance {
   double value = 0;
   bool percent = false;

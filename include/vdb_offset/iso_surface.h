@@ -87,7 +87,7 @@ struct IsoStatistics {
   std::size_t turned_edges = 0;           ///< Edges whose two faces run through them in the same direction.
   MendStatistics mending;                 ///< Crossings and needles, and what was done about them.
   double worst_error = 0, rms_error = 0;  ///< Of vertices: |distance to the source - target| / target.
-  FaceError faces;                        ///< Its causes are not told.
+  FaceError faces;                        ///< Its causes are not found.
 
   bool closed() const { return border_edges == 0 && non_manifold_edges == 0; }
   bool manifold() const { return non_manifold_edges == 0 && pinched_vertices == 0 && turned_edges == 0; }
@@ -127,14 +127,14 @@ struct IsoResult {
 /// progress callback asks for it.
 VDB_OFFSET_API IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options);
 
-/// Tells what make_iso_surface() would do, without doing it.
+/// Plans what make_iso_surface() would do, without doing it.
 VDB_OFFSET_API IsoStatistics plan_iso_surface(PolygonView mesh, const IsoOptions& options);
 
 /// Makes an iso-surface with distances in a metric, by make_iso_surface(). Validity is checked on coordinates as they
 /// will be written; distances, and all figures of them, are measured in the metric. \throw as make_iso_surface()
 VDB_OFFSET_API IsoResult make_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options, const Metric& metric);
 
-/// Tells what make_iso_surface_in_metric() would do, without doing it.
+/// Plans what make_iso_surface_in_metric() would do, without doing it.
 VDB_OFFSET_API IsoStatistics plan_iso_surface_in_metric(PolygonView mesh, const IsoOptions& options,
                                                         const Metric& metric);
 

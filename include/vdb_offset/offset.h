@@ -29,9 +29,9 @@ VDB_OFFSET_API OffsetResult offset(PolygonView mesh, const OffsetOptions& option
 VDB_OFFSET_API std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Distances> distances,
                                                         const OffsetOptions& options);
 
-/// Tells what offset() would do, without doing it: the mesh's facts and the plan of the grid.
+/// Plans what offset() would do, without doing it: the mesh's facts and the plan of the grid.
 VDB_OFFSET_API OffsetStatistics plan_offset(PolygonView mesh, const OffsetOptions& options);
-/// Tells what offset_several() would do, or grow_layers() to the only distance with so many layers, without doing it:
+/// Plans what offset_several() would do, or grow_layers() to the only distance with so many layers, without doing it:
 /// the mesh's facts and the plan of the grid.
 VDB_OFFSET_API OffsetStatistics plan_several(PolygonView mesh, std::span<const Distances> distances,
                                              const OffsetOptions& options, std::size_t layers = 0);
@@ -45,7 +45,7 @@ VDB_OFFSET_API OffsetStatistics plan_several(PolygonView mesh, std::span<const D
 ///
 /// Each round is an offset in which flat faces, and the vertices of curved ones, go inward by what they lack: the
 /// nearest point of a triangle that is too near is a weighted mean of its corners, and each corner goes farther by its
-/// weight. Where several faces meet, those go for which that helps. How much the gap grows tells how far to go in the
+/// weight. Where several faces meet, those go for which that helps. How much the gap grows shows how far to go in the
 /// next round. Rounds end when nothing is too near, or when the best one has not been bettered for some: where the mesh
 /// is too thin, or inward does not lead away from the other mesh. The best round, with the fewest triangles too near
 /// and then the widest gap, is the result; its `distances` are those that were needed, and its `statistics.fit` has the
@@ -137,7 +137,7 @@ struct VDB_OFFSET_API Tolerance {
 struct RefinedOffset {
   Refinement refinement;  ///< The mesh that was offset: the one given, rounded if the precision asks for that, its
                           ///< faces split.
-  OffsetResult result;    ///< Of that; `statistics.certified` tells what is proven.
+  OffsetResult result;    ///< Of that; `statistics.certified` is what is proven.
 };
 
 /// Offsets a mesh so that its faces are at the distance, too: they are split until it is proven that every point of the

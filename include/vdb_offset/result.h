@@ -61,7 +61,7 @@ VDB_OFFSET_API const char* name(FaceFault fault);
 struct LimitStatistics {
   FaultCounts before;                     ///< In what propagate() made; of curves, with points in order.
   FaultCounts left;                       ///< 0 but where rounding to the format's numbers makes a source cross itself.
-  std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: told, not repaired.
+  std::size_t source_crossings = 0;       ///< Pairs of triangles that meet in the source: counted, not repaired.
   bool more_source_crossings = false;     ///< There are more of them than these, and what is near is not looked at.
   std::size_t crossings_near_source = 0;  ///< New pairs within two rings of one of those, which has to slide.
   std::size_t followed_vertices = 0;      ///< Vertices with a warm start from a farther offset.
@@ -130,7 +130,7 @@ struct ExactFacts {
 /// What of a CAD model's faces became faces of a file.
 struct CadFileFacts {
   enum class Made {
-    Solid,   ///< As many solids as the source has: valid, closed and at the distance as far as samples tell.
+    Solid,   ///< As many solids as the source has: valid, closed and at the distance as far as samples show.
     Shells,  ///< The same of a source that is no solid.
     Faces,   ///< Faces that are good, and not all of the source's offset.
     Facets,  ///< Solids of triangles.

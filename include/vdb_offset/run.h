@@ -19,7 +19,7 @@ inline constexpr std::size_t kStageCount = 11;
 VDB_OFFSET_API const char* name(Stage stage);
 
 /// Called with a stage and the share of it that is done, 0..1. Return false to cancel: the call that works
-/// then throws Cancelled. Calls never overlap, but come from whichever thread has something to tell.
+/// then throws Cancelled. Calls never overlap, but come from whichever thread has something to report.
 using ProgressCallback = std::function<bool(Stage, double)>;
 
 /// Called before the memory of a run is taken, with the bytes that it is estimated to hold at most. May wait until

@@ -19,7 +19,7 @@ def offset_several(vertices: np.ndarray, faces: Faces, distances: Sequence[Dista
     :param vertices: (n, 3) positions, world units
     :param faces: (m, k) numbers of vertices, or a pair of offsets and corners
     :param distances: see the module
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
     wanted = lengths("distances", distances, options.get("unit"))
@@ -35,7 +35,7 @@ def offset(vertices: np.ndarray, faces: Faces, distance: Distance, **options: An
     :param vertices: (n, 3) positions, world units
     :param faces: (m, k) numbers of vertices, or a pair of offsets and corners
     :param distance: see the module
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
     >>> import numpy as np
@@ -56,7 +56,7 @@ def offset_curves_several(points: np.ndarray, curves: Faces, distances: Sequence
                           **options: Any) -> List[Offset]:
     """Offsets plane curves by each of several distances; see `offset_curves()`.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     """
     wanted = lengths("distances", distances, options.get("unit"))
     results = _core.offset_curves(points, curves, wanted, *given(offset_curves_several, options))
@@ -70,7 +70,7 @@ def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **optio
     :param points: (n, 3) positions in one plane, world units
     :param curves: (m, 2) segments, or a pair of offsets and points: each a polyline, closed if its last point is its first
     :param distance: see the module
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
     >>> import numpy as np
@@ -90,7 +90,7 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
 
     :param tolerance: how far off they may be: world units, or a text with a percentage of the distance
     :param max_faces: no more are made; 0: 20 times as many as the mesh has, at least a million
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
     >>> import numpy as np
@@ -115,8 +115,8 @@ def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], cle
 
     :param other: vertices and faces
     :param clearance: above 0: world units, or "1%" of the diagonal of the mesh
-    :param options: by keyword; `help()` tells of each
-    :return: `distances` are those that were needed, and `statistics["fit"]` tells the gap that is left
+    :param options: by keyword; `help()` describes each
+    :return: `distances` are those that were needed, and `statistics["fit"]` has the gap that is left
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
     """
     room = length("clearance", clearance, options.get("unit"))
@@ -138,7 +138,7 @@ def _shells(vertices: np.ndarray, faces: Faces, distances: List[Distance],
 def shell_several(vertices: np.ndarray, faces: Faces, distances: Sequence[Distance], **options: Any) -> List[Shell]:
     """Makes a solid between the mesh, or one inner skin, and each of several offsets; see `shell()`.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     """
     return _shells(vertices, faces, lengths("distances", distances, options.get("unit")), given(shell_several, options))
 
@@ -147,7 +147,7 @@ def shell_several(vertices: np.ndarray, faces: Faces, distances: Sequence[Distan
 def shell(vertices: np.ndarray, faces: Faces, distance: Distance, **options: Any) -> Shell:
     """Makes a solid between the mesh and its offset, or with `inner` between two offsets.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
     >>> import numpy as np
@@ -199,7 +199,7 @@ def layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distan
     """Grows layers of cells on a mesh, for a flow solver: prisms, hexahedra or polyhedra over its faces.
 
     :param heights: distances of the layers from the wall, rising, all to one side
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
     >>> import numpy as np
@@ -218,7 +218,7 @@ def curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[D
                  **options: Any) -> Layers:
     """Grows layers of quadrilaterals on plane curves; see `layers()` and `offset_curves()`.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     """
     keywords, progress = given(curve_layers, options)
     wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords, options.get("unit"))
@@ -230,7 +230,7 @@ def iso_surface(vertices: np.ndarray, faces: Faces, distance: Union[float, str],
     """Makes the surface at a distance from a mesh: a new mesh, closed and manifold, whatever the input is.
 
     :param distance: for all vertices, not 0
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidResult: if the surface is not valid; `statistics` of the exception are its report
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
@@ -248,7 +248,7 @@ def iso_surface_several(vertices: np.ndarray, faces: Faces, distances: Sequence[
                         **options: Any) -> List[Iso]:
     """Makes the surface at each of several distances, one after the other; see `iso_surface()`.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     """
     keywords, progress = given(iso_surface_several, options)
     wanted = lengths("distances", distances, options.get("unit"))
@@ -261,7 +261,7 @@ def iso_shell(vertices: np.ndarray, faces: Faces, distance: Union[float, str], *
     `inner` of two iso-surfaces.
 
     :param distance: for all vertices, not 0
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput: for a mesh that has no inside, too
     :raises InvalidResult: as `iso_surface()`
     :raises InvalidOption, OutOfBudget, Cancelled:
@@ -276,7 +276,7 @@ def structured_layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequ
                       **options: Any) -> Block:
     """Grows layers on a mesh that is a grid of quads, as a structured block of hexahedra; see `layers()`.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
 
     >>> import numpy as np
     >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
@@ -293,7 +293,7 @@ def structured_curve_layers(points: np.ndarray, curves: Faces, heights: Optional
                             **options: Any) -> Block:
     """Grows layers on one plane curve, as a structured block of quadrilaterals; see `curve_layers()`.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     """
     keywords, progress = given(structured_curve_layers, options)
     wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords, options.get("unit"))
@@ -311,7 +311,7 @@ def check(vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: O
     :param distance: the one that was asked for; None: the one that is found
     :param tolerance: prove of as many faces as possible that they are that near to the distance at every point: world
         units, or a text with a percentage of it
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, Cancelled:
     """
     keywords, unit = given(check, options), options.get("unit")
@@ -324,7 +324,7 @@ def check_curves(points: np.ndarray, curves: Faces, positions: np.ndarray, dista
                  **options: Any) -> Check:
     """Measures positions as an offset of plane curves; see `check()` and `offset_curves()`.
 
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     """
     wanted = length("distance", distance, options.get("unit"))
     return Check(**_core.check_curves(points, curves, positions, wanted, None, *given(check_curves, options)))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The keywords that functions share: the one list of their names, types, defaults and meanings. Signatures, what
-`help()` tells, the stubs, and what is refused are made of it."""
+`help()` says, the stubs, and what is refused are made of it."""
 
 import inspect
 import math
@@ -114,7 +114,7 @@ LAYERS = [*_OF_LAYERS, *(name for name in OFFSET if name not in _NOT_OF_LAYERS)]
 CURVE_LAYERS = [*_HEIGHTS, *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
 
 #: Stands in docstrings for the options.
-_PLACE = "    :param options: by keyword; `help()` tells of each\n"
+_PLACE = "    :param options: by keyword; `help()` describes each\n"
 
 
 def takes(names: Sequence[str], without: Sequence[str] = ()) -> Callable[[Function], Function]:

@@ -102,7 +102,7 @@ def offset_mesh(mesh: Any, distance: Distance, **options: Any) -> Tuple[Any, Off
     """Offsets a mesh of trimesh, PyVista, VTK, meshio or Open3D.
 
     :param distance: see the module
-    :param options: by keyword; `help()` tells of each
+    :param options: by keyword; `help()` describes each
     :return: a copy of the mesh with its vertices moved, and what `offset()` returns
     :raises TypeError: for anything else, and as `offset()`
     """

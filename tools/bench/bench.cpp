@@ -244,7 +244,7 @@ Options parse(int argc, char** argv, CLI::App& app) {
   app.add_option("--threads", options.threads, "Thread counts to run with; 0 is all")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--repeat", options.repeat, "Runs; medians are told")->capture_default_str();
+  app.add_option("--repeat", options.repeat, "Runs; medians are printed")->capture_default_str();
   app.add_option("--queries", options.queries, "Exact distances at random points, one thread")->capture_default_str();
   app.add_option("--brute-force", options.brute_force, "Exact distances to compare with trying every triangle")
       ->capture_default_str();

@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
   std::string folder = std::filesystem::temp_directory_path();
   int repeat = 5;
   app.add_option("FILES", files, "Meshes (.obj .ply .stl .off)")->required();
-  app.add_option("--repeat", repeat, "Runs; medians are told")->capture_default_str();
+  app.add_option("--repeat", repeat, "Runs; medians are printed")->capture_default_str();
   app.add_option("--folder", folder, "Where written files go")->capture_default_str();
   try {
     app.parse(argc, argv);

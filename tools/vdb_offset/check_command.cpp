@@ -41,8 +41,8 @@ constexpr const char* kCheckAbout =
     "and collapsed faces, and pairs of triangles that meet but do not in SOURCE, by exact predicates.\n"
     "Both must have the same vertices and faces in the same order, or OFFSET their triangles, as STL has them; or "
     "they\n"
-    "are curves, with the same points. What an offset by vdb_offset was told of distances, parts, planes, obstacles,\n"
-    "welding and orientation has to be told here as well; then both find the same.";
+    "are curves, with the same points. Give distances, parts, planes, obstacles, welding and orientation as they were\n"
+    "for an offset by vdb_offset: then both find the same.";
 
 constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";

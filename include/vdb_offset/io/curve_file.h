@@ -53,7 +53,7 @@ struct CurveFile {
 /// for that; one that is compressed, or no regular file, is taken for a mesh. \throw ReadError
 VDB_OFFSET_API bool holds_curves(const std::string& path);
 
-/// The length of the unit of a file's coordinates in micrometres, if it is a drawing that tells it: a DXF file with a
+/// The length of the unit of a file's coordinates in micrometres, if it is a drawing that states it: a DXF file with a
 /// unit in its header, which is all that is read, or an SVG drawing by its width, height and viewBox. \throw ReadError,
 /// InvalidInput as read_curves()
 VDB_OFFSET_API std::optional<double> unit_of_curves(const std::string& path);

@@ -33,7 +33,7 @@ VDB_OFFSET_API bool is_written(Format format);
 /// Whether a file of the format holds a CAD model.
 VDB_OFFSET_API bool is_cad(Format format);
 
-/// The length of the unit of a file's coordinates in micrometres, if the file tells it. Reads no more than that takes.
+/// The length of the unit of a file's coordinates in micrometres, if the file states it. Reads no more than that takes.
 /// \throw ReadError, InvalidInput as read_mesh()
 VDB_OFFSET_API std::optional<double> unit_micrometres(const std::string& path, std::optional<Format> format = {});
 
@@ -56,7 +56,7 @@ struct VDB_OFFSET_API MeshFile {
   Precision precision;                       ///< What its coordinates can hold.
   std::shared_ptr<const Document> document;  ///< What its format's reader keeps of it.
   std::size_t normal_count = 0;              ///< Its normals: of vertices, corners or facets.
-  std::optional<double> unit_micrometres;    ///< The length of the unit of its coordinates, if the file tells it.
+  std::optional<double> unit_micrometres;    ///< The length of the unit of its coordinates, if the file states it.
   std::vector<std::string> files_beside;     ///< Files that were read besides, as a .gltf names them.
   std::vector<std::string> files_named;      ///< Files that it names and that were not read, as images and materials.
   /// Of a CAD model: its surface, which the polygons are a tessellation of.
@@ -89,13 +89,13 @@ struct VdbReading {
 };
 
 struct ReadOptions {
-  std::optional<Format> format;  ///< By the file's ending, if not told.
+  std::optional<Format> format;  ///< By the file's ending, if not given.
   CadReading cad;
   VdbReading vdb;
 };
 
-/// Reads a mesh, by the file's ending or as told; STL gives three vertices a facet. `.gz` and `.zst` behind that ending
-/// are decompressed; "-" is standard input, and needs to be told its format. A .gltf may name files beside it.
+/// Reads a mesh, by the file's ending or as given; STL gives three vertices a facet. `.gz` and `.zst` behind that
+/// ending are decompressed; "-" is standard input, and needs a format. A .gltf may name files beside it.
 /// \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was expected, what was
 /// found) for content that is no mesh. Never allocates more than a small multiple of the file's size.
 VDB_OFFSET_API MeshFile read_mesh(const std::string& path, std::optional<Format> format = {});
@@ -108,7 +108,7 @@ VDB_OFFSET_API MeshFile parse_mesh(const std::string& name, Format format, std::
 enum class Normals { Recompute, Keep };
 
 struct WriteOptions {
-  std::optional<Format> format;  ///< By the file's ending, if not told.
+  std::optional<Format> format;  ///< By the file's ending, if not given.
   Normals normals = Normals::Recompute;
   int digits = 0;  ///< Significant digits of coordinates in text, 1 .. 17; 0: as many as read back to the same number.
 };
@@ -254,14 +254,14 @@ VDB_OFFSET_API Selector parse_selector(const std::string& text);
 VDB_OFFSET_API const char* in_words(Selector::By by);
 
 /// One number a face: 1 if any of the selectors names it that are not negated, or if all are, and none of those that
-/// are names it. \throw InvalidOption for a name that no face has, which tells those that there are; for a shape that
+/// are names it. \throw InvalidOption for a name that no face has, which lists those that there are; for a shape that
 /// none has; and if no face is left. ReadError, InvalidInput for a file that cannot be read, or holds no faces of this
 /// mesh.
 VDB_OFFSET_API std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Selector> selectors);
 
 /// Reads a number for each of `count` vertices, in their order: from text (numbers between blanks and line ends, '#'
 /// starts a comment) or from an array that NumPy saved (.npy, versions 1 to 3: floating or whole numbers of 1 to 8
-/// bytes, either byte order, of shape (n,) or (n, 1)), which its first bytes tell. `.gz` and `.zst` are decompressed;
+/// bytes, either byte order, of shape (n,) or (n, 1)), as its first bytes show. `.gz` and `.zst` are decompressed;
 /// "-" is standard input. \throw ReadError if the file cannot be opened, InvalidInput (file, line or byte, what was
 /// expected, what was found) for content that is neither, another count, or a number that is not finite (the vertex,
 /// counted from 0). Never allocates more than a small multiple of `count`, or of the file's size if that is less.

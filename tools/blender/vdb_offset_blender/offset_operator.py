@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The operator: what it asks for, and what it tells."""
+"""The operator: what it asks for, and what it reports."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
@@ -19,7 +19,7 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
     result: EnumProperty(name="Result", default="KEY", items=[
         ("KEY", "Shape Key", "A new shape key of this mesh, in full effect"),
         ("OBJECT", "New Object", "A copy of the object, with its vertices moved")])
-    vertex_group: StringProperty(name="Vertex Group", description="Its weights tell the distance of each vertex: at weight 1 "
+    vertex_group: StringProperty(name="Vertex Group", description="Its weights give the distance of each vertex: at weight 1 "
                                  "Distance, at weight 0 the other one, and between these in proportion")
     distance_at_zero: FloatProperty(name="At Weight 0", description="How far vertices go that have weight 0, or are not in the group",
                                     default=0, unit="LENGTH", soft_min=-10, soft_max=10, precision=4)

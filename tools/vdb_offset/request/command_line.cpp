@@ -146,7 +146,7 @@ void CommandLine::add_unit(std::string& unit, const std::string& input) {
   measured_ = &input;
   option("--unit", "UNIT",
          "What the numbers of the file are: 'um', 'mm', 'cm', 'm', 'in' or 'ft'; then distances and other lengths may "
-         "have a unit, as in 0.2mm [the file's own, if it tells one]",
+         "have a unit, as in 0.2mm [the file's own, if it states one]",
          [&unit](const std::string& text) {
            require(micrometres_of(text).has_value(),
                    "--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft', got '" + text + "'");

@@ -28,7 +28,7 @@ model (.step .stp .iges .igs .brep), which is tessellated, and whose offset may 
 of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
 face.
 D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
-below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which tells each vertex its
+below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which gives each vertex its
 own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
 functions (sin, sqrt, min ...); a % behind it makes it percent. Several distances give several outputs: NAME_001.obj,
 NAME_002.obj ..., or OUTPUT holds {i} (their number) or {d} (the distance as given).
@@ -94,7 +94,7 @@ void declare_distances(CommandLine& line, Draft& draft) {
         draft.iso.adaptivity = parse_number("--adaptivity", text, "a number from 0 to 1", kBelowZero, 1);
       });
   line.option("--inside", "MODE",
-              "With --mode iso: 'winding' tells what is inside of a mesh that is closed but for small holes, or has "
+              "With --mode iso: 'winding' decides what is inside of a mesh that is closed but for small holes, or has "
               "edges of four faces and more; 'never' takes such a mesh as open, with a surface on all its sides "
               "[winding]",
               [&draft](const std::string& text) {
@@ -165,7 +165,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
   line.repeated(
       "--symmetry", "PLANE",
       "A plane that what lies on it stays in: 'x=0', 'y=1.5', 'z=-2', or 'A,B,C,D' for A x + B y + C z = D; may "
-      "be repeated; 'none': not even borders stay in the planes that they lie in, as they do without being told",
+      "be repeated; 'none': not even borders stay in the planes that they lie in, as they do by default",
       [&request](const std::string& text) { take_plane(text, request); });
   line.repeated("--obstacle", "FILE",
                 "A mesh that the offset must not touch; distances are not measured from it; may be repeated",
