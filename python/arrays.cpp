@@ -22,7 +22,7 @@ std::string shape_of(const py::array& array) {
 
 namespace {
 
-/// An object as an array. What cannot be one for its type or value is told in the library's way; other errors are
+/// An object as an array. What cannot be one for its type or value is reported in the library's way; other errors are
 /// NumPy's.
 py::array as_array(const py::handle& object, const char* what) {
   try {

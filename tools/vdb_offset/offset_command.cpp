@@ -164,7 +164,7 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
   return as_asked ? kDone : kProcessing;
 }
 
-/// Writes what was made, tells of it and judges it. `refined`: the source of the job, if its faces have been split.
+/// Writes what was made, reports it and judges it. `refined`: the source of the job, if its faces have been split.
 ExitCode finish(const Job& job, std::vector<OffsetResult>& results, const RefinedSource* refined, const Timing& timing,
                 ProgressBar& bar) {
   const Request& request = job.request;
@@ -211,7 +211,7 @@ ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar
   OffsetOptions options = job.options;
   options.distance = job.distances.front();
   RefinedOffset made = offset_to_tolerance(job.source.view(), options, tolerance);
-  // Its file tells what the source's own vertices are. Where writing rounds these, they were rounded for the offset.
+  // Its file has what the source's own vertices are. Where writing rounds these, they were rounded for the offset.
   std::copy(job.source.view().positions.begin(), job.source.view().positions.end(),
             made.refinement.polygons.positions.begin());
   bar.show(Stage::Write, 0);

@@ -41,7 +41,7 @@ struct RefinedSource {
   std::vector<std::string> lost;      ///< What of the source it does not hold, in words.
 };
 
-/// Whether a file holds curves; one that cannot be opened is for the reader to tell of.
+/// Whether a file holds curves; one that cannot be opened is for the reader to report.
 bool holds_curves(const std::string& path);
 
 /// How curves are read for this request.

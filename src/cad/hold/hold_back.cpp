@@ -45,7 +45,7 @@ double rounded_down(double share) {
   return std::ldexp(std::floor(kSteps * 2 * part) / (kSteps * 2), exponent);
 }
 
-/// The distance that is farthest from 0 on a triangle, as far as points all over it tell.
+/// The distance that is farthest from 0 on a triangle, as far as points all over it show.
 double most_on(const FaceDistance& distance, const Soup::Triangle& triangle) {
   constexpr int kDivisions = 12;
   if (!distance.at) return distance.constant;

@@ -20,7 +20,7 @@
 namespace vdb_offset::cad {
 namespace {
 
-// Normals that are farther apart along an edge make it sharp, in radians. As edges are told apart in place.cpp.
+// Normals that are farther apart along an edge make it sharp, in radians. As in place.cpp.
 constexpr double kSmoothBend = 0.06;
 // Where along an edge that is looked at.
 constexpr double kPlacesAlong[] = {0.03, 0.25, 0.5, 0.75, 0.97};

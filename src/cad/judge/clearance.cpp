@@ -15,7 +15,7 @@ const Soup::Facing kAny{nullptr, gp_Vec(0, 0, 0), 1};
 constexpr double kFine = 1e-3;  // of a gap
 
 /// Narrows `most` to the distance of a segment from triangles, to a thousandth of it, or to `fine`: by halves, as the
-/// middle of one tells how near its ends may be.
+/// middle of one shows how near its ends may be.
 void narrow(const gp_Pnt& from, const gp_Pnt& to, const Soup& other, double fine, double& most) {
   const gp_Pnt middle((from.XYZ() + to.XYZ()) / 2);
   const double half = from.Distance(to) / 2;

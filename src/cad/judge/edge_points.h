@@ -10,7 +10,7 @@
 
 namespace vdb_offset::cad {
 
-/// Points along the edges of a shape, in cells: tells which points are near to an edge, for many of them.
+/// Points along the edges of a shape, in cells: finds which points are near to an edge, for many of them.
 class EdgePoints {
  public:
   /// \param reach how near counts, > 0

@@ -226,7 +226,7 @@ class Judge {
     is_closed_ = was.open == 0;
   }
 
-  // Walls that have passed each other by less than triangles tell: readers would take the inner shell for the
+  // Walls that have passed each other by less than triangles resolve: readers would take the inner shell for the
   // outer one.
   void check_turned_round() {
     const double was = volume_of(source_), made = volume_of(made_), is = volume_of(result_);
@@ -292,7 +292,7 @@ class Judge {
     const std::vector<SoupPoint> points = spread(result, options_.samples / 10);
     const std::size_t every = std::max<std::size_t>(1, points.size() * result.triangles().size() / kMostTurns);
     const auto is_other = [](double turns, double expected) {
-      // Between whole numbers triangles have gaps, or miss each other, which is told elsewhere.
+      // Between whole numbers triangles have gaps, or miss each other, which is reported elsewhere.
       return std::abs(turns - std::round(turns)) < 0.05 && std::round(turns) != expected;
     };
     for (std::size_t i = 0; i < points.size(); i += every) {
@@ -309,7 +309,7 @@ class Judge {
     }
   }
 
-  // Whether triangles cross, but at edges whose faces miss each other by as much as the topology tells.
+  // Whether triangles cross, but at edges whose faces miss each other by as much as the topology allows.
   bool crosses(const Soup& soup) const {
     constexpr std::size_t kMostCrossings = 200;
     for (const gp_Pnt& p : soup.crossings(kMostCrossings)) {

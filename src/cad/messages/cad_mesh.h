@@ -19,14 +19,14 @@ struct CadFineness {
   double least_of_diagonal = 0, most_of_diagonal = 1;  ///< Bounds of the deflection, as shares of the diagonal.
 };
 
-/// What a face of a CAD model is, as far as it is told.
+/// What a face of a CAD model is, as far as the file states it.
 struct CadFaceFacts {
   std::string name, layer;                      ///< Empty: none.
   std::optional<std::array<double, 3>> colour;  ///< Red, green, blue, 0 .. 1, as they are shown on a screen (sRGB).
   std::string solid;                            ///< The name of the solid or the part that it is of.
   std::string kind;                             ///< plane, cylinder, cone, sphere, torus, b-spline, ...
   std::array<double, 2> u{}, v{};               ///< The ranges of its parameters.
-  std::string instance;  ///< What the part, or the innermost assembly that is told, is called where it is placed.
+  std::string instance;  ///< What the part, or the innermost assembly that has a name, is called where it is placed.
   std::vector<std::string> within;  ///< The names of all parts and assemblies that it is in, and of their places.
 };
 
@@ -34,7 +34,7 @@ struct CadFaceFacts {
 enum class CadEdge : std::uint8_t { Tangent, Sharp };
 
 /// A tessellated CAD model: triangles that share their vertices along the model's edges. Each face of the model lies in
-/// one piece, in the order of the file's faces (numbered from 1 where they are told).
+/// one piece, in the order of the file's faces (numbered from 1 in messages).
 struct CadMesh {
   std::vector<Vec3d> positions;                          ///< In the file's unit.
   std::vector<std::array<std::uint32_t, 3>> triangles;   ///< Counter-clockwise from outside.
@@ -48,7 +48,7 @@ struct CadMesh {
   std::vector<CadEdge> edge_kinds;
   double deflection = 0;             ///< The most distance of triangles from their faces, as measured; > 0.
   double unit_micrometres = 1000;    ///< The length of the file's unit.
-  bool has_unit = false;             ///< Whether the file tells it.
+  bool has_unit = false;             ///< Whether the file states it.
   std::vector<std::string> extras;   ///< What the file holds besides faces, in words ("3 free curves").
   std::vector<std::string> remarks;  ///< What was mended, or could not be, in words.
 };

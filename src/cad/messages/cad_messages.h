@@ -13,7 +13,7 @@
 
 namespace vdb_offset::io {
 
-// What the program and its worker, vdb_offset_cad, tell each other. The worker first says its version; then each
+// What the program and its worker, vdb_offset_cad, send each other. The worker first says its version; then each
 // request has one reply.
 
 /// What the worker is asked for.
@@ -89,7 +89,7 @@ struct WriteCad {
 /// What a written file holds.
 enum class CadMade : std::uint32_t {
   Nothing,  ///< No file: no face could be made.
-  Solid,    ///< As many solids as the source has, valid, closed and at the distance as far as 10,000 samples tell.
+  Solid,    ///< As many solids as the source has, valid, closed and at the distance as far as 10,000 samples show.
   Shells,   ///< The same of a source that is no solid.
   Faces,    ///< Faces that are good, and not all of the source's offset.
   Facets,   ///< Solids of triangles.

@@ -48,7 +48,7 @@ void MessageChannel::wait(short event, const Deadline& deadline) const {
   pollfd watched{socket_.number(), event, 0};
   while (true) {
     const int ready = ::poll(&watched, 1, milliseconds_left(deadline));
-    if (ready > 0) return;  // or an end, of which the next call tells
+    if (ready > 0) return;  // or an end, which the next call finds
     if (ready < 0 && errno != EINTR && errno != EAGAIN) throw Hangup();
   }
 }

@@ -52,7 +52,7 @@ class MessageChannel {
 
   /// \throw TooLate, Hangup
   void send(std::uint32_t kind, std::string_view payload, const Deadline& deadline);
-  /// What comes is kept as it comes: a length that is told and not kept to takes no memory. \throw TooLate, Hangup,
+  /// What comes is kept as it comes: a length that is named and not kept to takes no memory. \throw TooLate, Hangup,
   /// BadMessage if it does not start as messages do, or is longer than `most` bytes
   Message receive(const Deadline& deadline, std::uint64_t most);
   void close() { socket_.close(); }

@@ -267,7 +267,7 @@ bool keeps_pcurve(const ModelEdge& e, const HalfEdge& h) {
          (e.range[0] >= h.pcurve->FirstParameter() - apart && e.range[1] <= h.pcurve->LastParameter() + apart);
 }
 
-// Builds the curves from every other point of a trace; the points between tell the tolerance.
+// Builds the curves from every other point of a trace; the points between give the tolerance.
 EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& trace, double tolerance) {
   EdgeCurves r;
   std::vector<double> t = trace.s;

@@ -34,7 +34,7 @@ bool let_stray(Model& model, const std::vector<int>& spokes, bool may_stray);
 /// half-edges that start at the vertex; only those that are asked for count.
 std::vector<Support> supports_of(const Model& model, const std::vector<int>& faces_of, const std::vector<int>& spokes);
 
-/// Places a vertex where the offsets of its faces meet, and tells its half-edges' (u, v).
+/// Places a vertex where the offsets of its faces meet, and gives its half-edges their (u, v).
 void place_vertex(Model& model, int vertex, const Tolerances& tolerances);
 
 /// Places it where its faces meet if edges within one surface leave their trimming curves. False if there are none, or

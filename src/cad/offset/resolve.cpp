@@ -128,7 +128,7 @@ class Splitter {
       const std::vector<int> chain = chain_of(t, corner);
       std::vector<gp_Pnt> line;
       for (int k : chain) line.push_back(points[k].point);
-      // Only if there is no other: directions in the source tell less of the offset the farther it is.
+      // Only if there is no other: directions in the source say less of the offset the farther it is.
       if (!is_simple(line, corner) || has_spike(line, across(t, corner), corner))
         length += kCrossing * tolerances_.distance;
       for (std::size_t i = 0; i + 1 < line.size(); i++) length += line[i].Distance(line[i + 1]) / 2;

@@ -23,7 +23,7 @@ namespace {
 
 using Colour = std::optional<std::array<double, 3>>;
 
-/// What a part, a solid or a face is told to be; what is not told comes from what it is of.
+/// What a part, a solid or a face is by its labels; what they leave out comes from what it is of.
 struct Told {
   std::string name, layer;
   Colour colour;
@@ -146,7 +146,7 @@ class Walk {
   }
 
   /// What is told of the last of the placed parts and assemblies as long as it is in those before it. (XCAF calls that
-  /// a specified higher usage occurrence.) What begins farther up tells more of the one place that is meant.
+  /// a specified higher usage occurrence.) What begins farther up says more of the one place that is meant.
   void take_nested(Place& place, Told& told) {
     for (std::size_t first = path_.size() - 1; first-- > 0;) {
       TDF_LabelSequence labels;

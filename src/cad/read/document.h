@@ -20,7 +20,7 @@ using Names = std::unordered_map<const TopoDS_TShape*, std::string>;
 /// that the document does not have.
 void add_document(const opencascade::handle<TDocStd_Document>& document, const Names& names, CadModel& model);
 
-/// Adds the faces of a shape of which nothing is told. What has faces, edges and points apart is told in words.
+/// Adds the faces of a shape without labels. What has faces, edges and points apart is reported in words.
 void add_shape(const TopoDS_Shape& shape, CadModel& model);
 
 /// Readers of the formats. \throw InvalidCad

@@ -14,7 +14,7 @@
 namespace vdb_offset::cad {
 namespace {
 
-// A direction whose sine against another is below this has no side that could be told in double numbers.
+// A direction whose sine against another is below this has no side that doubles could resolve.
 constexpr double kNoDirection = 1e-10;
 // Where a face is so narrow, as a share of what it is along, its directions are those of rounded numbers.
 constexpr double kNoWidth = 1e-9;

@@ -36,7 +36,7 @@ void make_triangles(const TopoDS_Shape& shape, const IMeshTools_Parameters& para
     if (has_triangles(face) || !has_area(face)) continue;
     try {
       FaceGrid(face, parameters).make_triangles();
-    } catch (const Standard_Failure&) {  // NOLINT(bugprone-empty-catch): then it has none, which is told
+    } catch (const Standard_Failure&) {  // NOLINT(bugprone-empty-catch): then it has none, which is reported
     }
   }
 }

@@ -53,7 +53,7 @@ struct BodyMesh {
 /// How many edges of the body's faces have no second face.
 std::size_t count_free_edges(const Body& body);
 
-/// Sews faces whose edges lie in one place and are two, where the body has open edges; tells what it closed, and gives
+/// Sews faces whose edges lie in one place and are two, where the body has open edges; names what it closed, and gives
 /// whether there is any.
 bool sew_open_edges(Body& body, double tolerance, double diagonal, std::vector<std::string>& remarks);
 

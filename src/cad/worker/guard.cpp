@@ -16,7 +16,7 @@
 namespace vdb_offset::cad {
 namespace {
 
-/// Waits for the worker's end, which closes `alive`, and tells it; or for that of the program, and ends the worker.
+/// Waits for the worker's end, which closes `alive`, and reports it; or for that of the program, and ends the worker.
 [[noreturn]] void guard(pid_t worker, int alive) {
   ::close(io::kWorkerMessages);
   ::close(io::kWorkerModel);

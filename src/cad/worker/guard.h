@@ -3,8 +3,8 @@
 
 namespace vdb_offset::cad {
 
-/// Makes this process two: the one that returns does the work; the other waits for its end, and tells it to the program
-/// that started the worker (files/cad/worker_process.h). If that program goes, both do.
+/// Makes this process two: the one that returns does the work; the other waits for its end, and passes it to the
+/// program that started the worker (files/cad/worker_process.h). If that program goes, both do.
 void start_guard();
 
 }  // namespace vdb_offset::cad

@@ -24,7 +24,7 @@ class Requests {
   std::string offset(std::string_view payload) const;
 
   std::optional<CadModel> model_;
-  std::vector<SidedSurface> surfaces_;  ///< Of the faces, in the order in which they are told.
+  std::vector<SidedSurface> surfaces_;  ///< Of the faces, in the order in which they are given.
 };
 
 }  // namespace vdb_offset::cad

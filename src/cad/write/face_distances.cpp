@@ -16,7 +16,7 @@ namespace {
 
 double share_of(double at, double first, double last) { return last > first ? (at - first) / (last - first) : 0; }
 
-/// The distance that an expression tells a face, whose parameters it has scaled to their ranges.
+/// The distance that an expression gives a face, whose parameters it has scaled to their ranges.
 FaceDistance expressed(const DistanceExpression& expression, const TopoDS_Face& face, double diagonal,
                        double millimetres) {
   Box2 range{};

@@ -35,7 +35,7 @@ struct OffsetBodies {
 /// OpenCASCADE's tolerances are lengths, and meant for millimetres: models in other units are brought to these.
 TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor);
 
-/// What `shape_in` tells of each, as one shape.
+/// What `shape_in` makes of each, as one shape.
 template <class Bodies, class ShapeIn>
 TopoDS_Shape together(const Bodies& bodies, ShapeIn&& shape_in) {
   TopoDS_Compound all;

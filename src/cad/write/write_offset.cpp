@@ -28,7 +28,7 @@
 namespace vdb_offset::cad {
 namespace {
 
-constexpr std::size_t kMostGaps = 8;    // that are told
+constexpr std::size_t kMostGaps = 8;    // that are reported
 constexpr unsigned kMostTrimming = 60;  // seconds, of a trial
 constexpr unsigned kMostHolding = 120;  // seconds, of the whole model with its faces held back
 
@@ -261,7 +261,7 @@ class OffsetWriter {
   /// Whether the bodies neither cross nor enclose a part of an obstacle, nor come nearer to it than asked, or than the
   /// source is; measures the least gap. A part that goes through the source is in nobody's way.
   bool is_clear_of_obstacles(const CadModel& again) {
-    constexpr double kOff = 0.01;  // of the distance, as far as triangles tell
+    constexpr double kOff = 0.01;  // of the distance, as far as triangles show
     const double asked = millimetres_ * write_.clearance;
     const Soup before = soup_of(together(bodies_, [](const OffsetBody& each) { return each.source.shape; }));
     const Soup after = soup_of(

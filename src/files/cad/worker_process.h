@@ -22,7 +22,7 @@ class WorkerProcess {
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   MessageChannel& messages() { return messages_; }
-  /// How it ended, as of waitpid(), once its messages have ended; nothing if it did not tell.
+  /// How it ended, as of waitpid(), once its messages have ended; nothing if that is not known.
   std::optional<int> how_it_ended();
 
  private:

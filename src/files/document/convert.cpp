@@ -121,7 +121,7 @@ void fit_to_format(Format target, PolygonView mesh, Attributes& attributes) {
 }
 
 bool keeps_parts(Format format, const Attributes& with) {
-  // A triangle of 3MF has a colour or a material, by which a part is told.
+  // A triangle of 3MF has a colour or a material, by which a part is recognised.
   if (format == Format::ThreeMf) return with.colours.empty();
   return format != Format::Off && format != Format::Stl;
 }

@@ -62,7 +62,7 @@ enum class NormalsOf : std::uint8_t { Vertices, Corners, Facets };
 
 class Rows;
 
-/// What the reader of a format keeps of a file, to write it again and to tell what it holds besides a mesh.
+/// What the reader of a format keeps of a file, to write it again and to report what it holds besides a mesh.
 class Document {
  public:
   Document() = default;

@@ -52,7 +52,7 @@ bool holds_corners(Format format);
 /// A colour from 0 to 1 as a byte, for formats that store bytes.
 std::uint8_t colour_byte(double colour);
 
-/// Whether all colours are bytes, as far as three decimal digits can tell.
+/// Whether all colours are bytes, as far as three decimal digits resolve.
 bool are_bytes(const std::vector<std::array<double, 4>>& colours);
 
 /// Whether a float is enough for a number: both have the same shortest decimal form.

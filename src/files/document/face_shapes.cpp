@@ -35,7 +35,7 @@ constexpr std::size_t kFewestSides = 8;
 constexpr double kMostCurved = 29 * kOneDegree;
 // Sine between faces of one facet: far above the rounding of seven digits, far below the bends of curved surfaces.
 constexpr double kOneFacet = 1e-3;
-// Sine between the axes that three facets at a time tell, which rounding disturbs; and how far the angles between the
+// Sine between the axes of three facets at a time, which rounding disturbs; and how far the angles between the
 // axis of a ring and its normals may differ. Not measured.
 constexpr double kOneAxis = 0.1, kOneAngle = 0.02;
 // Cosine between the axis of a ring and its normals below which it is a cylinder. As kOneAngle.

@@ -122,7 +122,7 @@ void require_known(const MeshFile& mesh, const Labels& labels, const Selector& s
 void mark_from_file(const std::string& path, std::vector<std::uint8_t>& marks) {
   FileBytes bytes = FileBytes::open(path);
   Scanner scanner(path, bytes.view(), byte_order_mark(bytes.view()), false, '#');
-  // The numbers are read both ways, as only the length of the list, at the end of the file, tells which one is meant.
+  // The numbers are read both ways, as only the length of the list, at the end of the file, shows which one is meant.
   std::vector<std::uint8_t> as_marks, as_indices(marks.size(), 0);
   as_marks.reserve(marks.size());
   bool may_be_marks = true;

@@ -49,7 +49,7 @@ void set_limit(int what, rlim_t most) {
 #else
   (void)most_memory;
 #endif
-  // As the system has them: a handler of this program would tell of its own end.
+  // As the system has them: a handler of this program would report its own end.
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM, SIGINT, SIGALRM})
     std::signal(signal, SIG_DFL);
   // Should it wait for what the other threads, which it has not, would have given back.

@@ -92,8 +92,8 @@ struct DxfDocument {
   std::vector<DxfBlock> blocks;
   std::unordered_map<std::string, std::uint32_t> block_by_name;  ///< In lower case, as names are alike in any.
   std::unordered_map<std::string, DxfLayer> layers;
-  int version = 0;                   ///< The number behind AC in $ACADVER: 1009 is R12, 1015 is R2000; 0: not told.
-  int units = 0;                     ///< $INSUNITS; 0: not told.
+  int version = 0;                   ///< The number behind AC in $ACADVER: 1009 is R12, 1015 is R2000; 0: not stated.
+  int units = 0;                     ///< $INSUNITS; 0: not stated.
   std::uint64_t highest_handle = 0;  ///< Of all entities and objects.
   std::uint64_t seed_begin = 0, seed_end = 0;  ///< Bytes of the next handle to give, in $HANDSEED; both 0 if missing.
 };
@@ -108,7 +108,7 @@ DxfDocument read_dxf_document(const DxfText& text);
 /// The unit that a number of $INSUNITS stands for, micrometres; none for 0 and for lengths of the sky.
 std::optional<double> dxf_unit_micrometres(int units);
 
-/// The unit that the header tells; the sections behind it are not read. \throw InvalidInput as read_dxf_document()
+/// The unit that the header states; the sections behind it are not read. \throw InvalidInput as read_dxf_document()
 std::optional<double> unit_of_dxf(const DxfText& text);
 
 }  // namespace vdb_offset::io

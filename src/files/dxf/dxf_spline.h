@@ -37,7 +37,7 @@ std::array<DxfBezier, 2> halves_of(const DxfBezier& curve);
 bool is_flat(const DxfBezier& curve, double tolerance);
 
 /// Calls add(point) for the ends of the straight segments that a curve is flattened to: for each but its first point,
-/// its last one among them. False if they would need more halvings than doubles tell apart.
+/// its last one among them. False if they would need more halvings than doubles resolve.
 template <class Add>
 bool flatten_dxf(const DxfBezier& curve, double tolerance, const Add& add, int halvings = 0) {
   constexpr int kMostHalvings = 40;

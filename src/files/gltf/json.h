@@ -70,7 +70,7 @@ class JsonList {
   std::optional<JsonValue> list_;
 };
 
-/// Where values stand in a JSON text that a parser has accepted. A parsed text does not tell, and cannot be written
+/// Where values stand in a JSON text that a parser has accepted. A parsed text does not know, and cannot be written
 /// again as it was.
 class JsonText {
  public:

@@ -11,7 +11,7 @@ namespace vdb_offset::io::gltf {
 struct DataUri {
   std::string head;   ///< Up to the data, "base64," included.
   std::string bytes;  ///< Decoded.
-  bool padded;        ///< Whether `=` fills it up, as far as one can tell.
+  bool padded;        ///< Whether `=` fills it up, as far as one can see.
 };
 
 bool is_data_uri(std::string_view uri);

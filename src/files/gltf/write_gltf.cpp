@@ -88,7 +88,7 @@ class NewModel {
     if (!list.empty()) json_["materials"] = std::move(list);
   }
 
-  /// Adds a view of records and, if it is told what they are, an accessor of all of them.
+  /// Adds a view of records and, if it is given what they are, an accessor of all of them.
   std::size_t add_view(std::size_t count, std::size_t stride, int target, Section section) {
     Json view = {{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", count * stride}};
     if (target == kVertexTarget) view["byteStride"] = stride;

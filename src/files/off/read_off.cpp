@@ -20,7 +20,7 @@
 namespace vdb_offset::io {
 namespace {
 
-/// Whether vertices have normals, by the keyword [ST][C][N]OFF, which tells what stands behind their coordinates. 4OFF
+/// Whether vertices have normals, by the keyword [ST][C][N]OFF, which says what stands behind their coordinates. 4OFF
 /// and nOFF, which have other coordinates, are refused.
 bool has_normals(const Scanner& scanner, std::string_view keyword, MeshFile& file) {
   std::string_view prefix = keyword;

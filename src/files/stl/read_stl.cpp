@@ -131,7 +131,7 @@ void parse(MeshFile& file, StlRows& rows) {
   const std::string_view bytes = file.text();
   const bool says_solid = is_word(Scanner(file.path, bytes, byte_order_mark(bytes)).first_word(), "solid");
   const bool holds_header = bytes.size() >= kFirst;
-  // Binary files may also start with "solid": their size tells them from texts. Bytes behind the last facet are kept.
+  // Binary files may also start with "solid": their size decides. Bytes behind the last facet are kept.
   if (holds_header && (bytes.size() == kFirst + kFacet * std::size_t{promised_facets(file)} ||
                        (!says_solid && bytes.size() > kFirst + kFacet * std::size_t{promised_facets(file)})))
     return parse_binary(file, rows);

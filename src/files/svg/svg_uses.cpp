@@ -58,7 +58,7 @@ class UseResolver {
     active_.pop_back();
   }
 
-  /// Whether an element is drawn, as far as it tells itself; a symbol is where a `use` refers to it.
+  /// Whether an element is drawn, as far as it says itself; a symbol is where a `use` refers to it.
   static bool is_shown(const SvgElement& element, bool is_target) {
     if (element.kind == SvgKind::Foreign || element.kind == SvgKind::Hidden || is_none(element, "display"))
       return false;

@@ -63,7 +63,7 @@ struct ThreeMfModel {
 /// \throw InvalidInput (line, what was expected, what was found)
 ThreeMfModel read_model(const std::string& label, std::string_view text, bool with_properties = false);
 
-/// The unit that a model part tells at its beginning.
+/// The unit that a model part states at its beginning.
 double unit_of_model(const std::string& label, std::string_view text);
 
 /// The name of a unit that is so many micrometres long; empty if it has none.

@@ -19,7 +19,7 @@ struct ThreeMfTransform {
   bool is_regular() const;
   /// This one, and then that.
   ThreeMfTransform then(const ThreeMfTransform& next) const;
-  /// The point that is brought to `p`, as near as its coordinates can tell: of a transform that only moves or turns by
+  /// The point that is brought to `p`, as near as coordinates can be: of a transform that only moves or turns by
   /// right angles mostly to the last bit.
   Vec3d source_of(const Vec3d& p) const;
 

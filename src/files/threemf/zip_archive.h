@@ -50,9 +50,9 @@ class ZipArchive {
     const ZipEntry* entry;
     Packed contents;
   };
-  /// The archive with other contents in some entries; all other bytes stay, but for the numbers that tell where entries
+  /// The archive with other contents in some entries; all other bytes stay, but for the numbers that say where entries
   /// lie. Keeps references to the archive's bytes alone. \throw InvalidInput if it grows beyond what its headers can
-  /// tell
+  /// hold
   Pieces with(std::vector<Replacement> replacements) const;
 
  private:
@@ -76,7 +76,7 @@ class ZipArchive {
   std::vector<ZipEntry> entries_;                              // in the directory's order
   std::unordered_multimap<std::string, std::size_t> by_name_;  // in lower case
   std::uint64_t directory_at_ = 0, wide_end_at_ = 0;
-  // Where these are told; at 0 if they are not.
+  // Where these stand; at 0 if they do not.
   ZipField directory_field_, narrow_directory_field_, wide_end_field_;
 };
 

@@ -25,7 +25,7 @@ namespace {
 // zlib's parameter for a window of 32 KiB without any header.
 constexpr int kBareWindow = -15;
 constexpr std::size_t kUnpackAtOnce = std::size_t{1} << 20;  // bytes; not measured beside others
-constexpr std::uint64_t kWide = 0xffffffff;  // what a field of 32 bits holds where one of 64 bits tells the number
+constexpr std::uint64_t kWide = 0xffffffff;  // what a field of 32 bits holds where one of 64 bits has the number
 
 /// One piece of a deflated stream, which ends on a whole byte, so that another may follow.
 std::string deflated(const std::string& bytes, bool is_last) {
@@ -182,7 +182,7 @@ std::string unpack(const std::string& where, std::string_view packed, std::uint6
   std::size_t done = 0;
   while (!inflater.at_end()) {
     if (done > size) damaged_entry(where, fmt::format("{} bytes when unpacked", size), "more");
-    // One byte more than promised has room, and tells that there are too many.
+    // One byte more than promised has room, and shows that there are too many.
     if (done == bytes.size()) {
       const std::uint64_t next = std::min<std::uint64_t>(size + 1, done + std::max(done, kUnpackAtOnce));
       require_memory(next, where);
@@ -215,7 +215,7 @@ Pieces new_archive(const std::string& where, const std::vector<NewEntry>& entrie
   for (const NewEntry& entry : entries) {
     Packed contents = pack(where, entry.contents, kDeflated);
     directory += entry_header(entry, contents, at, true);
-    // The offset is told in the directory alone.
+    // The offset stands in the directory alone.
     bytes->push_back(entry_header(entry, contents, 0, false));
     at += bytes->back().size() + contents.packed;
     for (std::string& piece : contents.pieces) bytes->push_back(std::move(piece));

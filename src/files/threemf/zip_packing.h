@@ -39,7 +39,7 @@ struct NewEntry {
   std::string name;
   Pieces contents;
 };
-/// A new archive, with the same bytes each time: all entries are of the first day that the format can tell.
+/// A new archive, with the same bytes each time: all entries are of the first day that the format has.
 Pieces new_archive(const std::string& where, const std::vector<NewEntry>& entries);
 
 }  // namespace vdb_offset::io

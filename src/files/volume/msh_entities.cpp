@@ -75,7 +75,7 @@ class EntityFinder {
   }
 
  private:
-  /// An edge on which patches meet. `group` tells which ones.
+  /// An edge on which patches meet. `group` says which ones.
   struct Edge {
     Index low, high, group;
     Index other(Index p) const { return p == low ? high : low; }

@@ -29,7 +29,7 @@ constexpr int kLookEvery = 250;
 constexpr double kSecondsToStop = 5;
 // How often a model that waits for memory may be overtaken by others that take less. Not measured.
 constexpr std::size_t kMostOvertaken = 16;
-// Bytes that a model is taken to hold for each byte of its file until it has told its estimate. Measured, up to then: 6
+// Bytes that a model is taken to hold for each byte of its file until its estimate is known. Measured, up to then: 6
 // to 7, and 13 to 17 where the file is compressed.
 constexpr std::size_t kBytesPerByte = 7, kBytesPerPackedByte = 17;
 
@@ -205,7 +205,7 @@ void LocalJobs::wait_for_news(const Ended& ended) {
   }
 }
 
-/// Reads what a model tells and asks for. False once it has ended.
+/// Reads what a model reports and asks for. False once it has ended.
 bool LocalJobs::read_news(Job& job) {
   job.child.read_errors();
   const bool is_there = job.child.read_gate();

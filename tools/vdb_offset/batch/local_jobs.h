@@ -27,7 +27,7 @@ struct Shares {
 /// What this machine has, shared out as the request says.
 Shares share_out(const BatchRequest& request);
 
-/// What a batch tells while it is at work.
+/// What a batch reports while it is at work.
 struct BatchNews {
   std::function<void()> begun = [] {};  ///< Models are about to be done; before that, nothing has been changed.
   std::function<void(std::size_t model, const Record& record)> ended = [](std::size_t, const Record&) {};

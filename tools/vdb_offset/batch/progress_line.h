@@ -13,7 +13,7 @@ namespace vdb_offset::tool {
 /// elsewhere as a line each minute.
 class ProgressLine {
  public:
-  /// `work`: a measure of all that there is to do, as bytes of models; that of a model is told when it has ended.
+  /// `work`: a measure of all that there is to do, as bytes of models; that of a model is reported when it has ended.
   /// `what`: what becomes of models.
   ProgressLine(bool wanted, std::size_t models, double work, const char* what);
   ~ProgressLine() { clear(); }

@@ -156,7 +156,7 @@ void CommandLine::add_unit(std::string& unit, const std::string& input) {
 
 namespace {
 
-/// The unit that a file tells of its numbers, if it does. `format` is that of files with other endings; may be empty.
+/// The unit that a file states for its numbers, if it does. `format` is that of files with other endings; may be empty.
 /// \throw ReadError, InvalidInput as its reader
 std::optional<double> unit_of_file(const std::string& path, const std::string& format) {
   std::error_code unknown;

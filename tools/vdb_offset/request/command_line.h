@@ -42,7 +42,7 @@ class CommandLine {
   void add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over = {},
                   std::vector<std::string> kept_out = {});
   /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name;
-  /// where it is not given, the file `input`, which other options name, may tell its own.
+  /// where it is not given, the file `input`, which other options name, may state its own.
   void add_unit(std::string& unit, const std::string& input);
   /// What is declared from here on is not listed in --help.
   void hide_what_follows() { hidden_ = true; }

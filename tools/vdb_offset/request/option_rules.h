@@ -10,7 +10,7 @@ namespace vdb_offset::tool {
 /// --mode says.
 void require_together(const CommandLine& line, bool is_iso);
 
-/// \throw UsageError if values do not go together, or a file's name has no ending that tells what it is to hold. What
+/// \throw UsageError if values do not go together, or a file's name has no ending that says what it is to hold. What
 /// depends on whether INPUT holds curves is for require_for_input().
 void require_sound(const Request& request);
 /// Requires an ending that files of states have; check's rule as well. \throw UsageError

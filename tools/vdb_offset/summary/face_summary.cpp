@@ -14,7 +14,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Causes that make up less than this share of the error are not told: what helps against them would not be seen.
+// Causes that make up less than this share of the error are not reported: what helps against them would not be seen.
 constexpr double kLeastTold = 0.25;
 // Miters whose planes go too far by no more than this share do not count as a cause. The error up to which area counts
 // as being at the distance.

@@ -211,7 +211,7 @@ class VertexBlend {
   double settle(std::size_t place, std::vector<double>& of_share) const {
     const auto own = shares(place);
     if (own.empty()) return 0;
-    // Where no pieces are told, parts may meet at a sharp edge as well.
+    // Where no pieces are given, parts may meet at a sharp edge as well.
     const bool may_part = faces_.piece.empty() && faces_.blend == 0;
     double sum = 0;
     std::size_t pieces = 0;

@@ -15,7 +15,7 @@ namespace vdb_offset {
 /// with seven digits, far below all bends that are meant.
 inline constexpr double kOnePlaneSine = 1e-4;
 
-/// The largest tilt of a face that tells of a plane (see Surface::tilt). Reasoned: far below the bends of creases.
+/// The largest tilt of a face that stands for a plane (see Surface::tilt). Reasoned: far below the bends of creases.
 inline constexpr double kMostTilt = 0.01;
 
 /// The planes around a vertex: their normals, the areas of the faces on each, up to a factor, and by how much the
@@ -26,7 +26,7 @@ struct PlanesAround {
 };
 
 /// The planes around a vertex of a Surface or Polyline, each once: with the normal of the largest of the faces on it,
-/// which tells best. normal_of(face) and tilt_of(face), the sine of the angle by which that may be wrong, are called of
+/// which is best. normal_of(face) and tilt_of(face), the sine of the angle by which that may be wrong, are called of
 /// faces that have an area; those that may be tilted by more than kMostTilt are left out.
 template <class Shape, class NormalOf, class TiltOf>
 PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of, TiltOf&& tilt_of) {

@@ -40,7 +40,7 @@ inline Lanes sqrt_lanes(const Lanes& a) {
 #endif
 }
 
-/// Bit i tells whether lane i of a comparison holds.
+/// Bit i is whether lane i of a comparison holds.
 inline unsigned lane_bits(const IntLanes& mask) {
 #ifdef __SSE2__
   return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));

@@ -25,7 +25,7 @@ struct Ranked {
 
 /// The keys of the quantiles of a Spread, and the sum of terms, over `count` numbers: ranked(i) gives the key of number
 /// i, and term(i) what it adds to the sum. If there are many numbers, the upper halves of keys are counted first, which
-/// tells the upper half of each quantile; then the lower halves of the keys with these. The result does not depend on
+/// gives the upper half of each quantile; then the lower halves of the keys with these. The result does not depend on
 /// the number of threads. Cost: O(count).
 template <class Rank, class Term>
 class Quantiles {

@@ -89,7 +89,7 @@ class MiterFinder {
     std::uint32_t vertex;
     Vec3d end;
     double excess;
-    std::array<bool, 2> is_above_face;  // inward, outward: the end is at the distance, as far as its own faces tell
+    std::array<bool, 2> is_above_face;  // inward, outward: the end is at the distance, as far as its own faces show
     bool on_crease;
     bool is_exact;  // its planes are those of the exact surface
     bool at_walls = false;

@@ -154,7 +154,7 @@ class Marches {
     if (distance != 0) tries.push_back({v, distance < 0 ? -1 : 1, std::abs(distance)});
   }
 
-  /// The sets for which one of the vertices has no straight path, as the faces around it tell.
+  /// The sets for which one of the vertices has no straight path, as the faces around it show.
   std::vector<std::size_t> without_near_ends(std::vector<std::size_t> sets, std::span<const std::uint32_t> vertices) {
     std::erase_if(sets, [&](std::size_t set) {
       std::vector<StraightTry> tries;

@@ -206,7 +206,7 @@ class RidgeFollower {
     if (std::abs(left) > end_tolerance_) segment.ends = Ends::AtOther;
   }
 
-  /// Whether the other face is a plane, as far as the distance tells: whether it is as near as a plane would be just
+  /// Whether the other face is a plane, as far as the distance shows: whether it is as near as a plane would be just
   /// beyond the segment's end, where it is the nearest.
   bool is_plane(const Vec3d& from, const detail::Ridge& ridge, RidgeSegment& segment) const {
     // Share of the length to where the other face was nearest; and tolerances that the distance may be off by, as

@@ -54,7 +54,7 @@ class StraightPaths {
     }
   }
 
-  /// False if one of the tries has no end, as far as the faces around a vertex, and those next to them, tell: most
+  /// False if one of the tries has no end, as far as the faces around a vertex, and those next to them, show: most
   /// tries that have none show that soon.
   bool may_all_end() const {
     for (std::size_t i = 0; i < tries_.size(); ++i) {

@@ -102,7 +102,7 @@ class VertexMarch {
 
   /// From now on the path's corners are noted down, after these.
   void keep_trace(std::vector<Vec3d> so_far) { trace_ = std::move(so_far); }
-  /// Displacements to the path's corners, up to the end that was told last. \pre keep_trace() has been called
+  /// Displacements to the path's corners, up to the end that was found last. \pre keep_trace() has been called
   const std::vector<Vec3d>& trace() const {
     VDB_OFFSET_ASSERT(trace_.has_value());
     return *trace_;
@@ -177,7 +177,7 @@ class VertexMarch {
     }
   };
 
-  /// Steps along the direction field until all stops are told: where the distance is a stop's, at an obstacle, or, when
+  /// Steps along the direction field until all stops are met: where the distance is a stop's, at an obstacle, or, when
   /// the distance has not risen for kPatience, at its maximum on the path (climb()).
   template <class Report>
   void march_on(const Sample& first, std::span<const StopDistance> stops, Report&& report) {
@@ -233,7 +233,7 @@ class VertexMarch {
     }
   }
 
-  /// The point of a step at which the distance is the target, if the closest triangles tell that there is one before
+  /// The point of a step at which the distance is the target, if the closest triangles show that there is one before
   /// the step's end. `at`, the step's start, is short of the target.
   std::optional<Sample> stop_before(const Vec3d& end, Sample at) {
     constexpr int kMostSteps = 4;
@@ -304,7 +304,7 @@ class VertexMarch {
     return std::nullopt;
   }
 
-  /// The first point off the surface where the distance rises fastest, if the faces around the vertex tell that; else
+  /// The first point off the surface where the distance rises fastest, if the faces around the vertex show that; else
   /// along the start direction.
   std::optional<Sample> leave_along_ridge(double tolerance) {
     // Steps in distances, and how many tolerances a step is at least. Not measured.

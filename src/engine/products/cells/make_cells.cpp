@@ -159,7 +159,7 @@ std::size_t find_openings(const LayerPoints& points, const NumberedColumns& colu
 /// Joins all openings but the largest few into the last one. Returns the number of openings.
 std::size_t keep_largest(std::size_t openings, std::vector<OpenSide>& sides) {
   // The largest number of side patches: a surface that is torn to pieces has thousands of openings, which solvers would
-  // have to be told of one by one. Not measured.
+  // are listed one by one. Not measured.
   constexpr std::size_t kMost = 64;
   if (openings <= kMost) return openings;
   std::vector<Index> size(openings, 0), by_size(openings), number(openings, kMost - 1);

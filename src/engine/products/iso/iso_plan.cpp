@@ -61,7 +61,7 @@ IsoPlan estimate_iso(const Surface& surface, const IsoOptions& options, bool is_
 }
 
 bool fits_budget(const IsoPlan& plan, const IsoOptions& options, const MeshFacts& facts) {
-  // Voxels across, so that volumeToMesh, which has positions in single precision, tells them to a small part of a
+  // Voxels across, so that volumeToMesh, which has positions in single precision, resolves them to a small part of a
   // voxel.
   constexpr double kMostVoxelsAcross = 0x1p19;
   return (options.max_memory == 0 || plan.bytes <= options.max_memory) &&

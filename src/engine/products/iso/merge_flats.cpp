@@ -34,7 +34,7 @@ constexpr double kLeastMergedAngle = 0.05;
 // The least cosine between normals of one plane (0.8 degrees), but for triangles with next to no area. For a quick test
 // that leaves out most vertices of curved parts; not measured.
 constexpr double kAlikeNormals = 0.9999;
-// The least height of a triangle, in tolerances, that tells a plane. Not measured.
+// The least height of a triangle, in tolerances, that gives a plane. Not measured.
 constexpr double kClearHeight = 8;
 // The least share of vertices in flat parts for which merging is worth its time. Not measured.
 constexpr double kWorthMerging = 0.02;
@@ -129,7 +129,7 @@ class FlatMerger {
     return std::max({(p[1] - p[0]).lengthSqr(), (p[2] - p[1]).lengthSqr(), (p[0] - p[2]).lengthSqr()});
   }
 
-  /// The plane through a vertex with the normal of the largest of some triangles; none if all are too small to tell
+  /// The plane through a vertex with the normal of the largest of some triangles; none if all are too small to give one
   /// one.
   std::optional<FlatPlane> plane_of_largest(std::span<const std::uint32_t> triangles, std::uint32_t v) const {
     double most = 0;

@@ -152,7 +152,7 @@ class CreasePlaces {
   /// Accepts a point if it is in the voxel, but for rounding (flat parts of models often lie on the boundary of
   /// voxels), and if nothing else is nearer.
   std::optional<std::pair<Vec3d, std::uint32_t>> accept(std::size_t v, const Vec3d& x, std::uint32_t hint) const {
-    constexpr double kRounding = 1e-6;  // voxels: above the rounding of single precision, in which voxels are told
+    constexpr double kRounding = 1e-6;  // voxels: above the rounding of single precision, which voxels are in
     if (!is_near(v, x, kRounding)) return std::nullopt;
     const Closest closest = level_.query()(x, hint);
     if (!level_.is_reached(closest.distance) || !level_.is_on_side(x)) return std::nullopt;

@@ -24,7 +24,7 @@ class SpaceBesideBall {
  public:
   SpaceBesideBall(const Vec3d& vertex, const Vec3d& end, double radius) : vertex_(vertex), end_(end), radius_(radius) {}
 
-  /// Adds a point with its distance. Returns false if the radius is beyond `most` now, or cannot be told.
+  /// Adds a point with its distance. Returns false if the radius is beyond `most` now, or cannot be found.
   bool add(const Vec3d& x, double distance, double most) {
     const Vec3d away = x - end_;
     const double way = away.length(), beyond = way + distance - radius_ * (1 - kSameDistance);

@@ -232,7 +232,7 @@ void GrowthColumns::add(PolygonView mesh, const Surface& surface, std::uint32_t 
   }
   while (polygon.size() > 1 && polygon.back() == polygon.front()) polygon.pop_back();
   VDB_OFFSET_ASSERT(polygon.size() > 2);
-  // At least one side of a triangle is a side of its polygon, and tells whether the triangle runs as the polygon does.
+  // At least one side of a triangle is a side of its polygon, and shows whether the triangle runs as the polygon does.
   const bool turned = follows(polygon, b, a) || follows(polygon, c, b) || follows(polygon, a, c);
   const auto take = [&](std::vector<std::uint32_t> base) {
     if (turned) std::reverse(base.begin(), base.end());

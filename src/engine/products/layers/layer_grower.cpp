@@ -318,7 +318,7 @@ LayerStack LayerGrower::finish(const PutLayers& layers) {
     if (shares[v] == 1) continue;
     ++statistics_.thinned_vertices;
     statistics_.flat_vertices += shares[v] == 0;
-    if (stacks_.is_at_end(v)) continue;  // the path tells its distance and state
+    if (stacks_.is_at_end(v)) continue;  // the path has its distance and state
     paths_.achieved[v] = shares[v] > 0 ? wall_.distance_of(v) : 0;
     paths_.state[v] = VertexState::Limited;
   }

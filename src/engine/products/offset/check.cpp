@@ -35,7 +35,7 @@
 namespace vdb_offset {
 namespace {
 
-// Vertices between two times that progress is told: milliseconds. Not measured.
+// Vertices between two times that progress is reported: milliseconds. Not measured.
 constexpr std::size_t kVerticesTold = 1024;
 
 void require_usable(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
@@ -156,7 +156,7 @@ Vec3d across_all(const Vec3d& v, std::span<const Vec3d> normals) {
   return planes.within(v);
 }
 
-/// The planes around a vertex of the moving part, moved by a distance, as far as the digits of a file tell where they
+/// The planes around a vertex of the moving part, moved by a distance, as far as the digits of a file show where they
 /// are: edges that were split for a tolerance have small faces beside them, which rounding tilts.
 struct MovedPlanes {
   std::vector<Vec3d> normals;  ///< May be shorter than 1.
@@ -180,7 +180,7 @@ struct MovedPlanes {
 bool has_tolerance(const CheckOptions& options) { return options.tolerance_share + options.tolerance_length > 0; }
 
 /// Of each plane that of its faces takes the place which a displacement is nearest to: where faces were split, the
-/// largest one before that has told where the plane is.
+/// largest one before that gave the plane.
 void take_nearest(const Surface& part, std::uint32_t vertex, const Vec3d& displacement, double asked,
                   PlanesAround& planes) {
   const std::vector<Vec3d> of_largest = planes.normals;
@@ -327,7 +327,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   const WeldOptions weld = weld_for({.only = options.only, .weld = options.weld}, {.by_corner = by_corner});
   MeshParts parts = build_mesh_parts(space.view(), {options.only, options.obstacles, weld, options.orient});
   result.facts = options.metric.even() ? parts.surface().facts : build_surface(mesh, weld, options.orient).facts;
-  // Planes that are found tell where miters are. No walls: whoever made the offset may have left these planes.
+  // Planes that are found show where miters are. No walls: whoever made the offset may have left these planes.
   to_local_frame(parts, frame_voxel_size(parts.surface().facts), options.symmetry, 0);
   const Surface& surface = parts.surface();
   Progress progress(options.progress, Stage::Measure, units_of(surface, options));

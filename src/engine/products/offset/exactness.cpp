@@ -18,7 +18,7 @@ bool is_on_sharp_edge(const Surface& surface, const ExactCorners& exact, std::ui
   return exact.is_sharp(corners[e]) && exact.is_sharp(corners[(e + 1) % 3]);
 }
 
-/// Whether the way from an edge of the part goes along its normal, as far as flat triangles tell. Where it does not, as
+/// Whether the way from an edge of the part goes along its normal, as far as flat triangles show. Where it does not, as
 /// over a face beside the part that leaves it at another angle, its end is at the distance from the edge alone.
 bool is_across(const Vec3d& normal, const Vec3d& way) {
   constexpr double kLeastCosine = 0.97;  // 14 degrees: normals of neighbours differ by 15

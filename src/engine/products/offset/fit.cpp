@@ -37,7 +37,7 @@ constexpr double kLeastFitGain = 0.15;
 constexpr double kLeastOfBest = 0.5;
 // The share of a corner below which a point of a triangle is on the edge across from it. Reasoned: far above rounding.
 constexpr double kOnEdge = 1e-6;
-// How far inside of a triangle what touches its rim is told, as a share of the way to its middle. Not measured.
+// How far inside of a triangle what touches its rim is placed, as a share of the way to its middle. Not measured.
 constexpr double kJustInside = 1e-3;
 // Share of the clearance below which a gap has no direction but for rounding. Not measured.
 constexpr double kTouching = 1e-6;
@@ -251,9 +251,9 @@ class Fitting {
     }
   }
 
-  /// Sets the share of what was told that has been gained, if that was more than next to nothing.
-  void measure_gain(double gained, double told, double& gain) const {
-    if (told > kLeastOfBest * kLeastFitGain * wanted_) gain = std::clamp(gained / told, kLeastFitGain, 1.0);
+  /// Sets the share of what was expected that has been gained, if that was more than next to nothing.
+  void measure_gain(double gained, double expected, double& gain) const {
+    if (expected > kLeastOfBest * kLeastFitGain * wanted_) gain = std::clamp(gained / expected, kLeastFitGain, 1.0);
   }
 
   /// Lets parts go farther inward by what their vertices lack, then by what the nearest points of faces still lack, in
@@ -284,8 +284,8 @@ class Fitting {
     return sum;
   }
 
-  /// How much a point of a triangle gains of what the triangle goes inward. At its rim that is told from just inside of
-  /// the triangle, as what touches there has several sides.
+  /// How much a point of a triangle gains of what the triangle goes inward. At its rim that is taken from just inside
+  /// of the triangle, as what touches there has several sides.
   double expected_gain(std::uint32_t t, const Vec3d& point, bool touches) const {
     const auto& [a, b, c] = surface_.triangles[t];
     const Vec3d middle = (positions_[a] + positions_[b] + positions_[c]) / 3;

@@ -65,7 +65,7 @@ class FitParts::Finder {
     return on_crease_[surface_.from(a)] && on_crease_[surface_.to(a)] && normal(a / 3).lengthSqr() > 0 &&
            normal(b / 3).lengthSqr() > 0 && normal(a / 3).dot(normal(b / 3)) <= kSharpCosine;
   }
-  /// Whether a triangle is in the plane of another one, as far as it tells of a plane.
+  /// Whether a triangle is in the plane of another one, as far as it has a plane.
   bool is_in_plane(std::uint32_t first, std::uint32_t t) const {
     if (normal(t).lengthSqr() == 0) return true;
     const double tilt = surface_.tilt(t);

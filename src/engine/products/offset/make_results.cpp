@@ -148,7 +148,7 @@ class ResultMaker {
   /// Finds the faults of a draft, if it has to be valid, or if miters may have made some: no collision mode has those.
   void look_for_faults(Draft& draft, const ProgressCallback& callback) const {
     if (!has_to_be_valid() && draft.marched.mitred.empty()) return;
-    const Progress progress(callback, Stage::Limit, 1);  // tells that the stage has begun
+    const Progress progress(callback, Stage::Limit, 1);  // shows that the stage has begun
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, mesh_.source(), draft.distances, options_.precision, source_crossings_);
     draft.faults->move_to_ends(draft.marched.paths);

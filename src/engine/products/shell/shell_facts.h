@@ -10,7 +10,7 @@
 
 namespace vdb_offset {
 
-/// The positions of a mesh's vertices, with those that count as one at one of them: nothing else tells that they are
+/// The positions of a mesh's vertices, with those that count as one at one of them: nothing else shows that they are
 /// one in a file whose vertices are not numbered.
 std::vector<Vec3d> positions_as_welded(PolygonView mesh, const WeldOptions& weld);
 

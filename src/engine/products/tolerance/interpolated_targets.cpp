@@ -67,7 +67,7 @@ class NearPlanes {
   }
 
  private:
-  /// The point nearest to 0 on some of the planes, which bits tell.
+  /// The point nearest to 0 on some of the planes, which the bits are.
   std::optional<Vec3d> nearest_on(unsigned some) const {
     // Built up plane by plane, each made orthogonal to those before.
     Vec3d x(0.0);

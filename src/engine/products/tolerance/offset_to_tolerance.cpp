@@ -111,7 +111,7 @@ class RefinedRun {
     if (v == kNone || asked == 0) return Vec3d(0.0);
     const Vec3d displacement = coarse.positions[v] - mesh_.positions[v];
     if (!falls_short(coarse.states[v])) return displacement;
-    // Not measured: what has gone a good part of its way tells a direction.
+    // Not measured: what has gone a good part of its way has a direction.
     constexpr double kTellsDirection = 0.1;
     const double gone = displacement.length();
     if (gone > kTellsDirection * std::abs(asked)) return displacement * (std::abs(asked) / gone);

@@ -11,7 +11,7 @@
 namespace vdb_offset {
 
 /// The angle in degrees between the first of two perpendicular vectors and their sum, from their lengths, both at least
-/// 0: 90 if the first is 0. By a polynomial with a relative error of at most 7e-11, far below what a float can tell.
+/// 0: 90 if the first is 0. By a polynomial with a relative error of at most 7e-11, far below what a float can resolve.
 template <class Real>
 Real degrees_between(const Real& along, const Real& across) {
   // Coefficients of atan(x) / x in x^2, interpolated at the Chebyshev points of 0 .. 1.

@@ -15,7 +15,7 @@ namespace {
 // that no box is taken to be farther than it is.
 constexpr float kBoxRounding = 1 - 0x1p-20f;
 
-// kCrowdSamples: segments that are sampled to tell whether curves are crowded; not measured. kCrowd: lowest boxes that
+// kCrowdSamples: segments that are sampled to see whether curves are crowded; not measured. kCrowd: lowest boxes that
 // hold a point of a crowded curve, on average. With fewer, upright boxes are faster; usual curves have less than a
 // fifth of that.
 constexpr std::size_t kCrowdSamples = 256, kCrowd = 32;

@@ -92,7 +92,7 @@ class LeafRounds {
   }
 
   LeafGraph& graph_;
-  std::vector<float> pending_;  // of each leaf node, the least that its neighbours have told
+  std::vector<float> pending_;  // of each leaf node, the least that its neighbours have sent
   std::array<std::vector<std::int32_t>, 2> work_list_;
 };
 

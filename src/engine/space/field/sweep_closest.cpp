@@ -80,7 +80,7 @@ class ClosestSweep {
     });
   }
 
-  /// Bits that tell which of the eight voxels from n on are voxels of the front, which keep their values.
+  /// Bits that show which of the eight voxels from n on are voxels of the front, which keep their values.
   unsigned frozen_row(std::size_t leaf, int n) const {
     return leaf < front_leaves_ ? frozen_[leaf].getWord<std::uint8_t>(static_cast<openvdb::Index>(n / 8)) : 0u;
   }

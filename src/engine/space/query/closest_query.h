@@ -104,7 +104,7 @@ class ClosestQuery {
   using Blocks = std::array<std::uint32_t, kMostBlocks>;
 
   /// The distance up to which another point ties with the closest one. 1e-9 of the distance and 2.5e-8 of the slack are
-  /// far more than what two frames round differently, and far less than what a file's numbers tell apart; not measured.
+  /// far more than what two frames round differently, and far less than what a file's numbers keep apart; not measured.
   double farthest_tie(double distance) const {
     return distance * (1 + 1e-9) + 2.5e-8 * static_cast<double>(slack_) / scale_;
   }

@@ -13,7 +13,7 @@ namespace vdb_offset {
 
 /// The triangles that meet a ball, each behind a plane: no point is nearer to the triangle than to its plane. The plane
 /// through the triangle's closest point to a position, at right angles to the direction there, bounds the distance from
-/// below anywhere, as distances to what is convex are convex, and tells most triangles that were not the closest at one
+/// below anywhere, as distances to what is convex are convex, and drops most triangles that were not the closest at one
 /// position of a smooth path from the closest at the next without looking at them.
 ///
 /// Four planes at once, in floats, in a unit near the ball's radius; their rounding inside the ball is allowed for.

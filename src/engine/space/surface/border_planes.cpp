@@ -281,7 +281,7 @@ class PlaneFinder {
   /// Returns where the next piece begins.
   std::size_t hold_from(std::span<const std::uint32_t> all, std::size_t first) {
     const std::size_t straight = end_of_line(all, first), last = longest_from(all, first, straight);
-    // A piece that goes one edge beyond a straight line tells no plane: a line and an edge always lie in one.
+    // A piece that goes one edge beyond a straight line gives no plane: a line and an edge always lie in one.
     if (straight - first >= kFewEdges && last <= straight + 1) {
       hold_line(all.subspan(first, straight - first + 1));
       return straight;

@@ -104,7 +104,7 @@ class LoopFinder {
   std::vector<std::vector<std::uint32_t>> loops_;
 };
 
-/// A hole, and what tells whether it may be filled.
+/// A hole, and what decides whether it may be filled.
 struct JudgedHole {
   Hole hole;
   Vec3d centre{0.0}, across{0.0};  // of the rim; the vector area of the fan that fills it

@@ -25,7 +25,7 @@ struct ClosedSeams {
 /// \return what was welded, which borders are still suspiciously close to each other, and what counts as one
 ClosedSeams close_seams(PolygonView polygons, double precision, std::vector<std::uint32_t>& first);
 
-/// Makes one vertex of the ends of edges that are nothing but rounding: no longer than single precision can tell apart
+/// Makes one vertex of the ends of edges that are nothing but rounding: no longer than single precision can resolve
 /// across the mesh, and than MeshFacts::kSliver of the median edge. Marching tetrahedra, for one, leave such edges; the
 /// slivers between them would fold. A set of vertices stays apart if it is wider than that, or if it is all that
 /// there is.

@@ -12,7 +12,7 @@
 #include "ground/numbers/box_tree.h"
 #include "space/surface/surface.h"
 
-// What tells most pairs of triangles that are apart, in doubles and beyond all doubt: no more than rounding is left to
+// What finds most pairs of triangles that are apart, in doubles and beyond all doubt: no more than rounding is left to
 // exact predicates.
 
 namespace vdb_offset {
@@ -25,7 +25,7 @@ inline constexpr double kCrossingRounding = 1e-14;
 /// A number that is no less than a vector's length, and found faster.
 inline double no_shorter(const Vec3d& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
 
-/// The planes through the edges of a triangle at right angles to its own: they tell it from what lies beside it.
+/// The planes through the edges of a triangle at right angles to its own: they separate it from what lies beside it.
 class EdgePlanes {
  public:
   explicit EdgePlanes(const std::array<Vec3d, 3>& triangle) {
@@ -70,7 +70,7 @@ class EdgePlanes {
   std::array<Edge, 3> edges_;
 };
 
-/// A triangle's plane, which tells most of the triangles that do not meet it.
+/// A triangle's plane, which separates most of the triangles that do not meet it.
 class TrianglePlane {
  public:
   TrianglePlane() = default;

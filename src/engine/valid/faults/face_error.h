@@ -13,7 +13,7 @@
 
 namespace vdb_offset {
 
-/// The mean error beyond which its causes are told. Not measured.
+/// The mean error beyond which its causes are found. Not measured.
 inline constexpr double kWorthTelling = 0.01;
 
 /// The error up to which area counts as being at the distance. Told by name.

@@ -77,7 +77,7 @@ bool FaceFaults::is_crowded(std::uint32_t t) const {
   return clearance_ && is_near_obstacle(t);
 }
 
-/// A face that stood nearer than the clearance from the start keeps its gap, as far as coordinates can tell.
+/// A face that stood nearer than the clearance from the start keeps its gap, as far as coordinates resolve it.
 bool FaceFaults::is_near_obstacle(std::uint32_t t) const {
   const auto& [a, b, c] = surface_.triangles[t];
   const Vec3d& origin = surface_.origin;

@@ -16,7 +16,7 @@ namespace vdb_offset {
 ///
 /// The boxes of triangles around a vertex all meet there, so that each would be tested against all others, which takes
 /// the square of their number. Two triangles that share the vertex meet elsewhere only where they lie in the same
-/// direction from it: boxes around their directions tell most of them apart, whole blocks at a time. Around an edge, it
+/// direction from it: boxes around their directions separate most of them, whole blocks at a time. Around an edge, it
 /// is the directions at right angles to it that count.
 class FanBoxes {
  public:

@@ -32,12 +32,12 @@ struct Paths;
 /// result does not depend on the number of threads.
 ///
 /// Calls: move_to_ends() or move_all() once; then, in any order, move(), or try_out() and what is taken back of that
-/// trial. The queries tell of where the vertices stand at the time.
+/// trial. The queries see where the vertices stand at the time.
 class FaultFinder {
  public:
   class Trial;
   /// Which crossings of moved triangles are found: All, or at least one of each triangle, and none of triangles that
-  /// have to be taken back for other faults. That is enough to tell which vertices have to go back: if all of those are
+  /// have to be taken back for other faults. That is enough to know which vertices have to go back: if all of those are
   /// taken back, until there are no more, no crossing is missed in the end.
   enum class Crossings { All, OneOfEach };
   /// Where a vertex is to stand, world coordinates. Called in parallel.

@@ -23,7 +23,7 @@ class RimCrossings {
   /// Keeps references to all.
   /// \param other_skin positions of the vertices in the skin that does not move
   /// \param positions of the vertices in the skin that moves
-  /// \param distances of the vertices: the sign tells which skin is the outer one
+  /// \param distances of the vertices: the sign shows which skin is the outer one
   RimCrossings(const ConstrainedSurface& constrained, std::span<const Vec3d> other_skin,
                std::span<const Vec3d> positions, const Distances& distances);
 

@@ -183,7 +183,7 @@ void VertexPositions::take(std::uint32_t v, const Vec3d& x, const Closest& close
     right_side_[v] = is_on_side(side, x, closest);
 }
 
-/// Whether a position is on a side, as anything tells that is as near as the closest point. Where the moving part
+/// Whether a position is on a side, by any point that is as near as the closest point. Where the moving part
 /// crosses itself, an edge and its end may disagree, and rounding chooses between them.
 bool VertexPositions::is_on_side(int side, const Vec3d& x, const Closest& closest) const {
   const Surface& moving_part = constrained_.moving_part.surface();

@@ -44,7 +44,7 @@ struct SurfaceOffset {
 /// could not be freed there are not tried again.
 ///
 /// Vertices that are short in the end are `Limited`, with the distance that they have. `faults` has been made of this
-/// offset, and has its vertices at the ends of the paths. `starts`, if it is not null, is told what becomes of this
+/// offset, and has its vertices at the ends of the paths. `starts`, if it is not null, gets what becomes of this
 /// offset. The result does not depend on the number of threads.
 /// \pre each vector of `offset.paths`, and of `started_from`, has a value for each vertex
 LimitStatistics limit(FaultFinder& faults, const SurfaceOffset& offset, const ProgressCallback& progress = {},

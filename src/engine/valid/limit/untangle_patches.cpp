@@ -148,7 +148,7 @@ void PatchUntangler::untangle(const Indices& chosen, const Untangler::Options& e
 }
 
 /// Drops patches that are too large, or hopeless (see schedule.h). In the first pass none counts as hopeless:
-/// what it leaves tells.
+/// what it leaves decides.
 void PatchUntangler::leave_out(const PatchSizes& sizes, double least_contrast) {
   const std::size_t most = state_.started_from ? std::min(sizes.most_vertices, kWarmStartVertices)
                                                : sizes.most_vertices * (1 + state_.source.size() / kManyVertices);

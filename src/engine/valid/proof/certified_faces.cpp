@@ -52,7 +52,7 @@ Verdict judge(const CertifiedMesh& mesh, const OffsetProver& prover, const Offse
   const Vec3d& first = mesh.source[face.vertex[0]];
   verdict.area = (mesh.source[face.vertex[1]] - first).cross(mesh.source[face.vertex[2]] - first).length() / 2;
   verdict.is_there = of_corners([&](std::uint32_t v) { return is_there(mesh.states[v]); });
-  // Where the side changes no tolerance is told, as the distance is 0 somewhere.
+  // Where the side changes no tolerance is given, as the distance is 0 somewhere.
   if (!of_corners([&](std::uint32_t v) { return mesh.asked[v] * mesh.asked[face.vertex[0]] > 0; })) return verdict;
   const OffsetTriangle triangle = offset_triangle(mesh, face);
   verdict.is_proven = verdict.is_there && face.source != kNone && prover(triangle).certainty == Certainty::Proven;
@@ -79,7 +79,7 @@ OffsetTriangle offset_triangle(const CertifiedMesh& mesh, const OffsetFace& face
 CertifiedFaces certify(const CertifiedMesh& mesh, Progress* progress) {
   const OffsetProver prover(mesh.query);
   std::vector<Verdict> verdicts(mesh.faces.size());
-  // Faces between two times that progress is told: milliseconds. Not measured.
+  // Faces between two times that progress is reported: milliseconds. Not measured.
   constexpr std::size_t kFacesTold = 64;
   for_each_index((verdicts.size() + kFacesTold - 1) / kFacesTold,
                  [&](std::size_t block) {

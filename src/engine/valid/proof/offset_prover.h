@@ -33,10 +33,10 @@ struct Proof {
 /// Proves that triangles of an offset are at their distance at every point, not only at some.
 ///
 /// The distance to one triangle of the surface is convex. So it is no less, anywhere on a triangle of the offset, than
-/// a plane tells that no corner of the surface's triangle passes, or that touches its ball at one point; and it is no
+/// a plane proves that no corner of the surface's triangle passes, or that touches its ball at one point; and it is no
 /// more than linear between the corners. The first of all triangles of the surface that are near enough prove that no
 /// point is too near; the second of one of them that none is too far. Where either fails, an exact distance at the
-/// middle tells whether that point is off, and if it is not, both halves are looked at (Lipschitz's bound alone would
+/// middle shows whether that point is off, and if it is not, both halves are looked at (Lipschitz's bound alone would
 /// need the square of the number of pieces). The answer depends on nothing but the triangle and the surface. Safe from
 /// any number of threads.
 class OffsetProver {

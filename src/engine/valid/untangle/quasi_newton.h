@@ -25,7 +25,7 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/// L-BFGS: descent directions of a function, with what its last steps tell about its curvature (Nocedal and Wright,
+/// L-BFGS: descent directions of a function, with what its last steps show about its curvature (Nocedal and Wright,
 /// Numerical Optimization, 2006, algorithm 7.4). remember() each step, then ask for the next one by descend().
 class QuasiNewton {
  public:

@@ -179,7 +179,7 @@ class SceneReader {
     return name.C_Str();
   }
 
-  /// FBX tells its unit in centimetres.
+  /// FBX states its unit in centimetres.
   std::optional<double> unit() const {
     double centimetres = 0;
     float narrow = 0;

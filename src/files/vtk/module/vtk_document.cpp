@@ -66,7 +66,7 @@ std::string xml_of(vtkXMLWriter& writer, vtkPointSet& data, const VtkHeader& hea
   writer.SetEncodeAppendedData(header.base64);
   if (header.big_endian) writer.SetByteOrderToBigEndian();
   else writer.SetByteOrderToLittleEndian();
-  constexpr unsigned long kNarrow = 1u << 20;  // KiB; far below what counts of 32 bits can tell
+  constexpr unsigned long kNarrow = 1u << 20;  // KiB; far below what counts of 32 bits can resolve
   if (header.wide_counts || data.GetActualMemorySize() > kNarrow) writer.SetHeaderTypeToUInt64();
   else writer.SetHeaderTypeToUInt32();
   if (header.compressor == "vtkZLibDataCompressor") writer.SetCompressorTypeToZLib();

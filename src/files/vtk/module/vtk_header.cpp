@@ -136,7 +136,7 @@ void require_counts_of_legacy(const MeshFile& file) {
     std::uint64_t product = 1;
     for (std::size_t k = 1; k < std::min<std::size_t>(count, 3); ++k) {
       const auto number = decimal<std::uint64_t>(words[k]);
-      if (!number) continue;  // a name or a type; VTK's reader tells what it is not
+      if (!number) continue;  // a name or a type; VTK's reader refuses what it is not
       product =
           *number > most || product > most ? most + 1 : product * std::max<std::uint64_t>(1, is_array ? *number : 1);
       if (product > most) fail(file, at, "no more than the file has bytes for", line);

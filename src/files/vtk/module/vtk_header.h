@@ -5,7 +5,7 @@
 
 namespace vdb_offset::io {
 
-/// How a file of VTK's is made, as its first lines tell.
+/// How a file of VTK's is made, as its first lines say.
 struct VtkHeader {
   bool legacy = false, grid = false;  ///< An unstructured grid; else polygons.
   // Of XML files, what is kept as they are written again.

@@ -32,7 +32,7 @@ class Descriptor {
 /// The path of this program.
 std::string this_program();
 
-/// What a process has told, as one line: without the prefix of messages, and with semicolons between them.
+/// What a process has reported, as one line: without the prefix of messages, and with semicolons between them.
 std::string on_one_line(std::string_view told);
 
 /// A model's process: this program with another command line.
@@ -47,7 +47,7 @@ class Child {
 
   /// Takes in what it has written on standard error.
   void read_errors();
-  /// Takes in what it asks for and tells (see gate.h). False once it has ended.
+  /// Takes in what it asks for and reports (see gate.h). False once it has ended.
   bool read_gate();
   /// The bytes that it asks for since the last call; 0 if it asks for none.
   std::size_t wanted() { return std::exchange(wanted_, 0); }

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-// How the models of a batch share the memory: each is a process of its own, which tells its estimate and waits until
+// How the models of a batch share the memory: each is a process of its own, which states its estimate and waits until
 // there is room for it. The two ends of a socket: one in the process of the batch, one in that of the model.
 
 namespace vdb_offset::tool {

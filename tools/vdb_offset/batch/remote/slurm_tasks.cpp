@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kOption = "--slurm";
 constexpr double kSecondsBetweenQuestions = 2;  // to Slurm, which answers all of its users
-constexpr double kSecondsToTell = 30;           // until it is told why nothing begins
+constexpr double kSecondsToTell = 30;           // until a line says why nothing begins
 
 class SlurmTasks : public Tasks {
  public:
