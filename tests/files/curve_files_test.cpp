@@ -1,44 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
-#include <random>
 #include "support/bytes.h"
 #include "support/curve_oracles.h"
+#include "support/curve_runs.h"
 #include "support/folder.h"
-#include "vdb_offset/curve_offset.h"
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/run.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;
-
-namespace curve_files {
-namespace {
-
-OffsetResult offset_of(const Curves& curves, double distance) {
-  const Distances distances(distance);
-  return offset_curves(curves.view(), {&distances, 1}, {}).front();
-}
-
-/// States tell the truth, no point is too far out, and nothing crosses that did not before.
-void require_honest(const Curves& curves, const OffsetResult& result) {
-  CHECK(new_crossings(curves, result.positions) == result.statistics.limit.crossings_near_source);
-  CHECK(result.statistics.limit.left.total() == 0);
-  for (std::size_t p = 0; p < curves.positions.size(); ++p) {
-    if (result.states[p] == VertexState::Unused) continue;
-    const double target = std::abs(result.distances[p]), achieved = distance_to(curves, result.positions[p]);
-    const double rounding = 1e-12 * result.statistics.facts.diagonal;
-    CHECK(achieved == Approx(result.achieved[p]).margin(rounding));
-    CHECK(achieved <= target * (1 + 1e-6) + rounding);
-    if (result.states[p] == VertexState::Reached) CHECK(achieved >= target * (1 - 1e-6) - rounding);
-  }
-}
-
-}  // namespace
 
 TEST_CASE("curve files: text keeps its bytes but for the numbers", "[curves][io]") {
   const std::string text = "My foil\r\n# first, closed\n 1.0 0.0 \n0,5 1\n";
@@ -237,5 +210,3 @@ TEST_CASE("curve files: real curves at four distances", "[.curve_files]") {
   }
   CHECK(files >= 9);
 }
-
-}  // namespace curve_files

@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <tbb/task_arena.h>
 #include <catch2/catch.hpp>
 #include <clocale>
-#include <cmath>
-#include <cstring>
 #include <limits>
 #include <locale>
-#include <numbers>
 #include "bytes/compression.h"
-#include "space/surface/surface.h"
 #include "support/bytes.h"
+#include "support/expressions.h"
 #include "support/folder.h"
-#include "support/oracles.h"
-#include "vdb_offset/distances.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/run.h"
-#include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;
+using namespace vdb_offset::test;
 
 namespace distances_files {
 namespace {
@@ -26,28 +20,6 @@ namespace {
 using Numbers = std::vector<double>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// One vertex whose variables all differ: x y z = 1 2 3, nx ny nz = 0 0.6 0.8, u v = 0.25 0.75; a diagonal of 200.
-double value_of(const std::string& expression) {
-  const std::vector<Vec3d> position = {{1, 2, 3}}, normal = {{0, 0.6, 0.8}};
-  const std::vector<Vec2d> texture = {{0.25, 0.75}};
-  return DistanceExpression(expression)({position, normal, texture, 200}).at(0);
-}
-
-/// What the exception says; empty if there is none.
-template <class Exception, class Work>
-std::string message(Work&& work) {
-  try {
-    work();
-  } catch (const Exception& error) {
-    return error.what();
-  }
-  return {};
-}
-
-std::string complaint(const std::string& expression) {
-  return message<InvalidExpression>([&] { DistanceExpression{expression}; });
-}
 
 struct DecimalComma : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }

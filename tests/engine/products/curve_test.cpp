@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <filesystem>
 #include <numbers>
 #include <random>
 
-#include "support/bytes.h"
 #include "support/curve_oracles.h"
-#include "support/folder.h"
+#include "support/curve_runs.h"
 #include "vdb_offset/curve_offset.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/run.h"
@@ -17,25 +14,6 @@ using namespace vdb_offset;
 using namespace vdb_offset::test;
 
 namespace {
-
-OffsetResult offset_of(const Curves& curves, double distance) {
-  const Distances distances(distance);
-  return offset_curves(curves.view(), {&distances, 1}, {}).front();
-}
-
-/// States tell the truth, no point is too far out, and nothing crosses that did not before.
-void require_honest(const Curves& curves, const OffsetResult& result) {
-  CHECK(new_crossings(curves, result.positions) == result.statistics.limit.crossings_near_source);
-  CHECK(result.statistics.limit.left.total() == 0);
-  for (std::size_t p = 0; p < curves.positions.size(); ++p) {
-    if (result.states[p] == VertexState::Unused) continue;
-    const double target = std::abs(result.distances[p]), achieved = distance_to(curves, result.positions[p]);
-    const double rounding = 1e-12 * result.statistics.facts.diagonal;
-    CHECK(achieved == Approx(result.achieved[p]).margin(rounding));
-    CHECK(achieved <= target * (1 + 1e-6) + rounding);
-    if (result.states[p] == VertexState::Reached) CHECK(achieved >= target * (1 - 1e-6) - rounding);
-  }
-}
 
 std::size_t reached(const OffsetResult& result) {
   return result.statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)];
