@@ -545,6 +545,9 @@ TEST_CASE("command: 4 for output that cannot be written", "[command]") {
   check_failure(shell, "sphere.obj no/such/out.obj --distance 0.1", 4, "cannot be written");
   check_failure(shell, "sphere.obj out.obj --distance 0.1 --report no/such/report.json", 4, "report.json");
   check_failure(shell, "sphere.obj out.obj --distance 0.1 --report /dev/full", 4, "cannot be written");
+  // A .gltf of a mesh that has no numbers of its own beside it needs no .bin.
+  std::filesystem::create_directory(shell.file("all.bin"));
+  CHECK(shell("sphere.obj all.gltf --distance 0.1 -q").code == 0);
 }
 
 TEST_CASE("command: a dry run tells the plan and writes nothing", "[command]") {

@@ -149,7 +149,7 @@ void add_offsets(FilePlan& files, const Request& request) {
     files.written.push_back({"OUTPUT", to.mesh, may_be_input});
     // Where its numbers go, if those of the source are in a file of their own.
     if (io::format_of(to.mesh) == io::Format::Gltf)
-      files.written.push_back({"OUTPUT", fs::path(to.mesh).replace_extension(".bin").string(), may_be_input});
+      files.written.push_back({"OUTPUT", fs::path(to.mesh).replace_extension(".bin").string(), may_be_input, true});
     add_reports(files.written, to);
   }
   add(files.written, "--save-vdb", request.vdb);
@@ -194,7 +194,7 @@ void require_apart(const FilePlan& files) {
 
 void require_writable_files(const FilePlan& files) {
   for (const RunFile& file : files.written)
-    if (!file.is_of_folder) require_writable(file.path);
+    if (!file.is_left_to_writer) require_writable(file.path);
 }
 
 FilePlan plan_files(const Request& request) {

@@ -16,7 +16,9 @@ struct Job;
 struct RunFile {
   std::string option, path;
   bool may_be_input = false;  ///< Of what is written: it may take the place of INPUT, which is complete by then.
-  bool is_of_folder = false;  ///< OUTPUT or a file in it, where that is a folder which is written as a whole.
+  /// Of what is written: its writer finds out whether it can be. That is so of a folder that is written as a whole, and
+  /// of a file that may not be needed.
+  bool is_left_to_writer = false;
 };
 
 /// Where the offset for one distance goes. Names of files that were not asked for are empty.
@@ -45,7 +47,7 @@ FilePlan plan_files(const Job& job);
 void require_apart(std::span<const RunFile> read, std::span<const RunFile> written);
 void require_apart(const FilePlan& files);
 
-/// \throw WriteError for the first file that cannot be written; of a folder that is written as a whole, none.
+/// \throw WriteError for the first file that cannot be written, but for those that are left to their writers
 void require_writable_files(const FilePlan& files);
 
 /// Whether a path is standard output, as `-` and /dev/stdout are.
