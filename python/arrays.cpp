@@ -29,7 +29,10 @@ py::array as_array(const py::handle& object, const char* what) {
     return py::array(py::reinterpret_borrow<py::object>(object));
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
-    throw InvalidInput(std::string(what) + ": expected an array, got something else");
+    const std::string kind = py::str(py::type::of(object).attr("__name__"));
+    throw InvalidInput(std::string(what) + (kind == "list" && std::string(what) == "faces"
+                                                ? ": got a list of lists of unequal lengths; pass (offsets, corners)"
+                                                : ": expected an array of numbers, got a " + kind));
   }
 }
 
@@ -55,6 +58,16 @@ py::array_t<std::uint32_t> as_indices(const py::array& array, const char* what) 
     return i < 0 || i >= std::int64_t{kNone} ? kNone : static_cast<std::uint32_t>(i);
   });
   return indices;
+}
+
+/// An element of an array, by its place, and what it is.
+std::string place_of(const py::handle& object, std::ptrdiff_t index) {
+  const py::array array = as_array(object, "faces");
+  const auto size = array.ndim() == 2 ? static_cast<std::ptrdiff_t>(array.shape(1)) : 0;
+  const py::object value = array.attr("item")(index);
+  return (size > 0 ? "faces[" + std::to_string(index / size) + ", " + std::to_string(index % size)
+                   : "faces: corners[" + std::to_string(index)) +
+         "] is " + std::string(py::str(value));
 }
 
 }  // namespace
@@ -88,8 +101,8 @@ void MeshArrays::take_corners(const py::handle& corners) {
   const auto outside =
       std::find_if(corners_.begin(), corners_.end(), [&](std::uint32_t v) { return v >= positions_.size(); });
   if (outside != corners_.end())
-    throw InvalidInput("faces: expected numbers of vertices, from 0 to " + std::to_string(positions_.size()) +
-                       " - 1, got another one as corner " + std::to_string(outside - corners_.begin()));
+    throw InvalidInput(place_of(corners, outside - corners_.begin()) + "; vertices are " +
+                       (positions_.empty() ? "none" : "0 to " + std::to_string(positions_.size() - 1)));
 }
 
 void MeshArrays::take_rows(const py::array& faces) {

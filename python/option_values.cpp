@@ -198,7 +198,8 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
   keywords.read("collision", options.collision,
                 std::array{std::pair{"limit", Collision::Limit}, std::pair{"merge", Collision::Merge}});
   keywords.read("corners", options.corners,
-                std::array{std::pair{"round", Corners::Round}, std::pair{"miter", Corners::Miter}});
+                std::array{std::pair{"miter", std::optional(Corners::Miter)},
+                           std::pair{"round", std::optional(Corners::Round)}});
   keywords.read("solver", options.solver,
                 std::array{std::pair{"closest", Solver::Closest}, std::pair{"eikonal", Solver::Eikonal}});
   keywords.read("border", options.border,
@@ -207,7 +208,7 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
   keywords.read("miter_limit", options.miter_limit);
   if (!(options.miter_limit >= 1) || !std::isfinite(options.miter_limit))
     throw InvalidOption("miter_limit: expected a number of 1 or more");
-  if (given.contains("miter_limit") && options.corners != Corners::Miter)
+  if (given.contains("miter_limit") && options.corners == Corners::Round)
     throw InvalidOption("miter_limit needs corners='miter'");
   if (const py::object clearance = keywords["clearance"]; !clearance.is_none()) {
     options.clearance = clearance_of(clearance, mesh);

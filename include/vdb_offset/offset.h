@@ -70,7 +70,7 @@ struct VDB_OFFSET_API CheckOptions {
   SymmetryOptions symmetry;  ///< What is beyond a plane is on the wrong side if that plane is named.
   PolygonView obstacles;
   double clearance = 0;
-  Corners corners = Corners::Round;
+  std::optional<Corners> corners;  ///< None: Corners::Miter.
   double miter_limit = 4;
   const ExactSurface* exact = nullptr;
   WeldOptions weld = WeldOptions::automatic();

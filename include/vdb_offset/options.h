@@ -83,7 +83,8 @@ struct VDB_OFFSET_API OffsetOptions {
   Metric metric;
   Solver solver = Solver::Closest;
   Collision collision = Collision::Limit;
-  Corners corners = Corners::Round;
+  /// What becomes of sharp corners. None: Corners::Miter; in layers Corners::Round.
+  std::optional<Corners> corners;
   /// The longest that a miter may be, in distances, >= 1; one that would be longer is cut, unless its end is at the
   /// distance itself.
   double miter_limit = 4;

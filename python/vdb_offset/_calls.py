@@ -45,7 +45,7 @@ def offset(vertices: np.ndarray, faces: Faces, distance: Distance, **options: An
     >>> offset(square, np.array([[0, 1, 2, 9]]), 0.25)
     Traceback (most recent call last):
         ...
-    vdb_offset.InvalidInput: faces: expected numbers of vertices, from 0 to 4 - 1, got another one as corner 3
+    vdb_offset.InvalidInput: faces[0, 3] is 9; vertices are 0 to 3
     """
     wanted = [length("distance", distance, options.get("unit"))]
     return Offset(**_core.offset(vertices, faces, wanted, *given(offset, options))[0])

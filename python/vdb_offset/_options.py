@@ -49,10 +49,11 @@ OPTIONS: Dict[str, Option] = {
     "distance_z": Option(Optional[Union[float, str]], None,
                          "the distance along z, beside a single one in the plane across it, of its sign; one of both\n"
                          "may be 0, which is a thousandth of the other", str),
-    "corners": Option(Literal["round", "miter"], "round",
-                      '"round": vertices at the distance; "miter": faces at the distance, beside sharp edges as well'),
+    "corners": Option(Optional[Literal["miter", "round"]], None,
+                      '"miter": faces at the distance, at sharp edges as well; "round": vertices at the distance;\n'
+                      'None: "miter", and for layers "round"'),
     "miter_limit": Option(Optional[float], None,
-                          'with corners="miter": the longest one, in distances, 1 or more; None: 4'),
+                          'how far a vertex on a sharp edge may go, in distances, 1 or more; None: 4'),
     "collision": Option(Literal["limit", "merge"], "limit",
                         '"limit": the result stays valid; "merge": each vertex goes as far as the distance grows'),
     "only": Option(Optional[np.ndarray], None,
@@ -176,7 +177,7 @@ def length(name: str, value: Any, unit: Optional[str], kind: Optional[Callable[[
     if found[2] is None:
         return kind(value)
     if unit is None:
-        raise _core.InvalidOption(f"{name}: expected unit as well, which says what the arrays' numbers are, got {value!r}")
+        raise _core.InvalidOption(f"{name} {value!r} needs unit=, e.g. unit='mm' if the arrays' numbers are millimetres")
     if found[2] == unit:
         return kind(found[1])
     number = repr(float(found[1]) * _UNITS[found[2]] / _UNITS[unit])

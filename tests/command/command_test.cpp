@@ -330,7 +330,12 @@ TEST_CASE("command: --strict-faces judges layers and iso-surfaces as well", "[co
 
 TEST_CASE("command: help and version", "[command]") {
   const ShellCommand shell;
-  const Run help = shell("--help");
+  const Run first = shell("--help");
+  CHECK(first.code == 0);
+  CHECK_THAT(first.out, Catch::Contains("--distance") && Catch::Contains("--preset") && !Catch::Contains("--solver"));
+  CHECK_THAT(shell("--help run").out, Catch::Contains("--solver") && !Catch::Contains("--distance D"));
+  CHECK_THAT(shell("check --help").out, Catch::Contains("--help accuracy") && !Catch::Contains("--help layers"));
+  const Run help = shell("--help all");
   CHECK(help.code == 0);
   for (const char* word : {"--distance", "--voxel-size", "--voxels-per-distance", "--collision", "--solver", "--weld",
                            "--threads", "--max-memory", "--report", "--states", "--paths", "--save-vdb", "--strict",
@@ -902,7 +907,7 @@ TEST_CASE("command: a DXF drawing has its own unit, and keeps what is no curve",
   const Run run = shell("half.dxf cut.dxf -d 2mm");
   REQUIRE(run.code == 0);
   CHECK_THAT(run.out, Catch::Contains("at 0.2: 100.000 % reached") && Catch::Contains("1 curved shape flattened"));
-  CHECK_THAT(run.err, Catch::Contains("half.dxf: what is no curve stays as it is: 1 TEXT"));
+  CHECK_THAT(run.err, Catch::Contains("half.dxf: not curves, copied unchanged: 1 TEXT"));
   CHECK(shell("check half.dxf cut.dxf -d 2mm --strict").code == 0);
   CHECK(shell("half.dxf other.dxf -d 2mm --unit mm").code == 0);
   CHECK(shell.slurp(shell.file("other.dxf")) != shell.slurp(shell.file("cut.dxf")));
@@ -913,7 +918,7 @@ TEST_CASE("command: a DXF drawing has its own unit, and keeps what is no curve",
   std::ofstream(shell.file("cut_off.dxf")) << text.substr(0, text.size() / 2);
   check_failure(shell, "cut_off.dxf no.dxf -d 2mm", 2, "expected 'ENDSEC', got the end of the file");
   std::ofstream(shell.file("none.dxf")) << dxf_text::file("0|LINE 11|1");
-  check_failure(shell, "none.dxf no.dxf -d 2mm", 1, "expected --unit as well");
+  check_failure(shell, "none.dxf no.dxf -d 2mm", 1, "does not state its unit; add --unit mm");
 }
 
 TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][curves][layers]") {

@@ -54,12 +54,12 @@ TEST_CASE("units: a drawing's size and viewBox tell its unit", "[command]") {
   CHECK_THAT(other.err, Catch::Contains("its own unit is 0.1 mm, and --unit takes it for 1 mm"));
   std::ofstream(shell.file("b.svg")) << "<svg xmlns='http://www.w3.org/2000/svg' width='100%' viewBox='0 0 1000 600'>"
                                         "<rect x='50' y='50' width='400' height='300'/></svg>";
-  check_failure(shell, "b.svg p.svg -d 0.1mm", 1, "--distance: expected --unit as well");
+  check_failure(shell, "b.svg p.svg -d 0.1mm", 1, "does not state its unit; add --unit mm");
 }
 
 TEST_CASE("units: what cannot be meant is told", "[command]") {
   const ShellCommand shell;
-  check_failure(shell, "sphere.obj a.obj -d 0.2mm", 1, "--distance: expected --unit as well");
+  check_failure(shell, "sphere.obj a.obj -d 0.2mm", 1, "does not state its unit; add --unit mm");
   check_failure(shell, "sphere.obj a.obj -d 0.2 --unit parsec", 1,
                 "--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft'");
   check_failure(shell, "sphere.obj a.obj -d 0.2km --unit m", 1, "--distance: distance '0.2km'");

@@ -319,7 +319,7 @@ TEST_CASE("dxf: what is no curve or not shown stays out, and is told", "[curves]
   REQUIRE(file.file.polygons.face_count() == 2);
   CHECK(points_of(file, 1) == std::vector<Vec3d>{{8, 0, 0}, {9, 0, 0}});
   REQUIRE(file.file.remarks.size() == 2);
-  CHECK(file.file.remarks[0] == "what is no curve stays as it is: 1 POINT, 1 POLYLINE, 2 TEXT");
+  CHECK(file.file.remarks[0] == "not curves, copied unchanged: 1 POINT, 1 POLYLINE, 2 TEXT");
   CHECK_THAT(file.file.remarks[1], Catch::Contains("6 in paper space, invisible, or on a layer that is off or frozen"));
 }
 
@@ -332,7 +332,7 @@ TEST_CASE("dxf: curves of paper space are taken where model space has none", "[c
   CHECK(points_of(file, 2) == std::vector<Vec3d>{{7, 0, 0}, {8, 0, 0}});
   REQUIRE(file.file.remarks.size() == 3);
   CHECK(file.file.remarks[0] == "its curves are those of paper space, as model space has none");
-  CHECK(file.file.remarks[1] == "what is no curve stays as it is: 1 VIEWPORT");
+  CHECK(file.file.remarks[1] == "not curves, copied unchanged: 1 VIEWPORT");
   // Written, they stay in paper space.
   std::vector<Vec3d> up = file.file.polygons.positions;
   for (Vec3d& p : up) p[1] += 1;

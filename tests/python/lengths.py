@@ -105,7 +105,7 @@ class Lengths(BesideTheCommand):
                  "total": lambda text: vdb_offset.layers(*box, count=1, total=text)}
         self.assertEqual({name for name, option in _options.OPTIONS.items() if option.length} - set(calls), set())
         for name, call in calls.items():
-            with self.subTest(name), self.assertRaisesRegex(vdb_offset.InvalidOption, f"^{name}: expected unit as well, .*'2mm'$"):
+            with self.subTest(name), self.assertRaisesRegex(vdb_offset.InvalidOption, f"^{name} '2mm' needs unit=, e.g. unit='mm'"):
                 call("2mm")
 
     def test_units_that_mean_nothing(self):

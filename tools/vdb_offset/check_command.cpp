@@ -18,6 +18,7 @@
 #include "request/command_line.h"
 #include "request/offset_options.h"
 #include "request/option_rules.h"
+#include "request/help.h"
 #include "request/option_values.h"
 #include "source.h"
 #include "summary/summary.h"
@@ -86,7 +87,7 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
                 [&made](const std::string& text) { made.obstacles.push_back(text); });
   line.option("--clearance", "C", "How near to obstacles is too near [0]",
               [&made](const std::string& text) { made.clearance = parse_clearance(text); });
-  line.option("--corners", "KIND", "What became of sharp corners: 'round' or 'miter' [round]",
+  line.option("--corners", "KIND", "What became of sharp corners: 'round' or 'miter' [miter]",
               [&made](const std::string& text) { made.corners = parse_corners(text); });
   line.option(
       "--tolerance", "T",
@@ -129,7 +130,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   Request& made = request.made;
   made.border = Border::Slide;
   std::string distance_xy, distance_z;
-  CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "check --help");
+  CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "check --help all");
   line.file(
       "SOURCE",
       "Mesh before (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu), CAD model (.step .iges .brep) or curves (.dat "
@@ -153,6 +154,10 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
             made.strict);
   line.option("--strict-faces", "P", "Exit with 3 unless 99 % of the faces' area is within P percent of the distance",
               [&made](const std::string& text) { made.strict_faces = parse_strict_faces(text); });
+  line.option("--strict-certified", "P", "With --tolerance: exit with 3 unless P percent of the area is certified",
+              [&made](const std::string& text) { made.strict_certified = parse_strict_certified(text); });
+  line.arrange_help(help_topics(),
+                    {"distance", "corners", "tolerance", "strict", "strict-faces", "report", "states", "html"}, kCheckMore);
   if (!line.parse(argc, argv)) return std::nullopt;
   require_miters(made);
   require_states_file(made);
@@ -294,7 +299,7 @@ CheckResult measure_curves(const CheckRequest& request) {
   const Job job = resolve_options(made, source);
   CheckOptions options;
   options.threads = made.threads;
-  options.corners = job.options.corners;
+  options.corners = job.corners();
   options.miter_limit = job.options.miter_limit;
   options.precision = io::precision_of_curves(made.output, *source.curves, made.write);
   if (!job.distances.empty()) options.distance = job.distances.front();
@@ -323,7 +328,7 @@ CheckResult measure_meshes(const CheckRequest& request) {
   options.symmetry = job.options.symmetry;
   options.obstacles = job.options.obstacles;
   options.clearance = job.options.clearance;
-  options.corners = job.options.corners;
+  options.corners = job.corners();
   options.miter_limit = job.options.miter_limit;
   options.exact = job.options.exact;
   options.weld = job.options.weld;
@@ -377,7 +382,7 @@ int run_check(int argc, const char* const* argv) {
   else print(out, result, curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
   if (made.strict_faces && !are_within(result.faces, *made.strict_faces, made.output)) return kProcessing;
-  if (result.certified && !is_certified(*result.certified, made.strict, made.output)) return kProcessing;
+  if (result.certified && !is_certified(*result.certified, made.certified_asked(), made.output)) return kProcessing;
   return result.valid() && (all_there || !made.strict) ? kDone : kProcessing;
 }
 

@@ -36,6 +36,8 @@ struct Job {
   FilePlan files;                             ///< All that is read and written.
 
   bool curves() const { return source.curves.has_value(); }
+  /// What becomes of sharp corners, also where it was not asked for: of layers what the library does with them.
+  Corners corners() const { return options.corners.value_or(request.layers ? Corners::Round : Corners::Miter); }
 };
 
 /// Settles all that depends on the mesh: takes from a scene what the command line leaves open, selects faces, evaluates

@@ -160,7 +160,7 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
   for (std::size_t i = 0; i < results.size() && job.request.strict; ++i)
     as_asked &= is_as_asked(results[i], job.curves());
   if (const auto& certified = results.front().statistics.certified)
-    as_asked &= is_certified(*certified, job.request.strict, job.files.outputs.front().mesh);
+    as_asked &= is_certified(*certified, job.request.certified_asked(), job.files.outputs.front().mesh);
   return as_asked ? kDone : kProcessing;
 }
 

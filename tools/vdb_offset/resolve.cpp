@@ -170,8 +170,8 @@ Job resolve_options(const Request& request, const Source& source) {
   if (request.collision) job.options.collision = *request.collision;
   if (request.corners) job.options.corners = *request.corners;
   if (request.miter_limit) job.options.miter_limit = *request.miter_limit;
-  if (request.miter_limit && job.options.corners != Corners::Miter)
-    throw InvalidOption("--miter-limit needs --corners miter, or a scene with mitred corners");
+  if (request.miter_limit && job.corners() != Corners::Miter)
+    throw InvalidOption("--miter-limit needs --corners miter, and the scene has round corners");
   settle_surroundings(job);
   if (!request.layers) job.distances = distances_of(job);
   else job.distances = heights_of_layers(job);

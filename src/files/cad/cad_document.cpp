@@ -126,7 +126,7 @@ class CadDocument : public Document {
     const char* const kind = selector.by == Selector::By::Name ? "name" : "color";
     if (known.empty())
       throw InvalidOption(
-          fmt::format("{}: expected a {} '{}', got a file without any", source.path, kind, selector.name));
+          fmt::format("{} has no {}s: '{}'", source.path, kind, selector.name));
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
     throw InvalidOption(fmt::format("{}: expected a {} among {}, got '{}'", source.path, kind,

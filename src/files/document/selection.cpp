@@ -113,7 +113,7 @@ void require_known(const MeshFile& mesh, const Labels& labels, const Selector& s
   if (known.contains(selector.name)) return;
   const char* const kind = group ? "group" : "material";
   throw InvalidOption(
-      known.empty() ? fmt::format("{}: expected a {} '{}', got a file without any", mesh.path, kind, selector.name)
+      known.empty() ? fmt::format("{} has no {}s: '{}'", mesh.path, kind, selector.name)
                     : fmt::format("{}: expected a {} among {}, got '{}'", mesh.path, kind,
                                   nearest_names(selector.name, {known.begin(), known.end()}), selector.name));
 }

@@ -175,7 +175,7 @@ class InsertResolver {
         else left += count;
       }
       if (left > 0) names += fmt::format(", {} more", left);
-      remarks.push_back(fmt::format("what is no curve stays as it is: {}", names));
+      remarks.push_back(fmt::format("not curves, copied unchanged: {}", names));
     }
     if (hidden_ > 0)
       remarks.push_back(fmt::format(

@@ -122,7 +122,7 @@ void read_collision_and_corners(JsonObject& offset, Scene& scene) {
     scene.corners = corners == "miter" ? Corners::Miter : Corners::Round;
   }
   scene.miter_limit = offset.optional_number("miter_limit");
-  if (scene.miter_limit && scene.corners != Corners::Miter) offset.fail("'corners' to be miter with a 'miter_limit'");
+  if (scene.miter_limit && scene.corners == Corners::Round) offset.fail("no 'miter_limit' where 'corners' are round");
   if (scene.miter_limit && !(*scene.miter_limit >= 1)) offset.fail("a 'miter_limit' of 1 or more");
 }
 

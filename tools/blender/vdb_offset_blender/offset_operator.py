@@ -23,9 +23,9 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
                                  "Distance, at weight 0 the other one, and between these in proportion")
     distance_at_zero: FloatProperty(name="At Weight 0", description="How far vertices go that have weight 0, or are not in the group",
                                     default=0, unit="LENGTH", soft_min=-10, soft_max=10, precision=4)
-    corners: EnumProperty(name="Corners", default="round", items=[
-        ("round", "Round", "Vertices are at the distance; flat faces beside sharp edges are nearer"),
-        ("miter", "Mitred", "Faces are at the distance; vertices on sharp edges are farther away")])
+    corners: EnumProperty(name="Corners", default="miter", items=[
+        ("miter", "Miter", "Faces are at the distance; vertices on sharp edges are farther away"),
+        ("round", "Round", "Vertices are at the distance; flat faces at sharp edges are nearer")])
     miter_limit: FloatProperty(name="Miter Limit", description="No vertex goes farther than so many distances", default=4, min=1,
                                soft_max=10)
     collision: EnumProperty(name="Narrow Places", default="limit", items=[

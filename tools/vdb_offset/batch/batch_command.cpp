@@ -180,15 +180,15 @@ ExitCode Batch::run(const RunMark& mark) {
   progress.clear();
   table_.finish();
   if (stop_signal())
-    tell(fmt::format("stopped: {} of {} have ended; the same call goes on from there", kept_ + done_ + failed_,
+    tell(fmt::format("stopped after {} of {}. Run the same command to resume", kept_ + done_ + failed_,
                      models_in_words(models_.size())));
   else if (!request_.quiet) print_summary(seconds_since(begun));
   return failed_ + left_out_ == 0 ? kDone : kProcessing;
 }
 
 void Batch::print_summary(double seconds) const {
-  std::string line = fmt::format("{}: {}: {} done", table_.path(), models_in_words(models_.size()), done_);
-  if (kept_ > 0) line += fmt::format(", {} as before", kept_);
+  std::string line = fmt::format("{}: {}: {} offset", table_.path(), models_in_words(models_.size()), done_);
+  if (kept_ > 0) line += fmt::format(", {} already up to date", kept_);
   if (failed_ > 0) line += fmt::format(", {} failed", failed_);
   fmt::print(Printout(), "{} ({})\n", line, time_in_words(seconds));
 }

@@ -13,6 +13,7 @@
 #include "messages.h"
 #include "request/config_file.h"
 #include "request/option_values.h"
+#include "request/presets.h"
 #include "request/request.h"
 #include "request/units.h"
 #include "vdb_offset/io/curve_file.h"
@@ -26,6 +27,9 @@ namespace {
 constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",    "inner",     "clearance",
                                     "first-height", "total-thickness", "voxel-size",    "tolerance", "weld",
                                     "flatten",      "deflection",      "fit-tolerance", "blend"};
+
+// In the place of a preset's name.
+constexpr const char* kAllPresets = "help";
 
 /// The words behind the name of a program or subcommand in reverse order, as CLI11 takes them. Words behind `--` are
 /// names of files, whatever they begin with.
@@ -46,8 +50,8 @@ std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
 }  // namespace
 
 CommandLine::CommandLine(const char* name, const char* about, const char* more, const char* help)
-    : app_(std::make_unique<CLI::App>(about, name)), help_(help) {
-  app_->footer(more);
+    : app_(std::make_unique<CLI::App>(about, name)), help_(help), more_of_all_(more), more_of_first_(more) {
+  app_->set_help_flag("-h,--help", "Print this and exit");
 }
 CommandLine::~CommandLine() = default;
 
@@ -80,6 +84,40 @@ void CommandLine::flag(const char* names, const char* about, bool& is_set) {
   place(app_->add_flag(names, is_set, about));
 }
 
+void CommandLine::arrange_help(std::span<const HelpTopic> topics, std::vector<std::string> options, std::string more) {
+  topics_ = topics;
+  first_options_ = std::move(options);
+  more_of_first_ = "\nMore options, by topic:\n";
+  const auto is_there = [this](const std::string& name) { return app_->get_option_no_throw("--" + name) != nullptr; };
+  for (const HelpTopic& topic : topics)
+    if (std::ranges::any_of(topic.options, is_there))
+      more_of_first_ += fmt::format("  {:<27} {}\n", fmt::format("--help {}", topic.name), topic.title);
+  more_of_first_ += fmt::format("  {:<27} All of them\n{}", "--help all", more);
+}
+
+void CommandLine::list_for(const std::string& topic) {
+  for (const HelpTopic& each : topics_)
+    for (const std::string& name : each.options)
+      if (CLI::Option* const option = app_->get_option_no_throw("--" + name))
+        option->group(topic == "all" || topic == each.name ? each.title : "");
+  if (!topic.empty()) return;
+  for (const std::string& name : first_options_) app_->get_option("--" + name)->group("Options");
+}
+
+bool CommandLine::print_help(const std::vector<std::string>& reversed) {
+  const auto asked = std::find_if(reversed.rbegin(), reversed.rend(),
+                                  [](const std::string& word) { return word == "-h" || word == "--help"; });
+  if (asked == reversed.rend()) return false;
+  const auto is_topic = [this](const std::string& word) {
+    return word == "all" || std::ranges::any_of(topics_, [&](const HelpTopic& each) { return each.name == word; });
+  };
+  const std::string topic = asked + 1 != reversed.rend() && is_topic(asked[1]) ? asked[1] : "";
+  list_for(topic);
+  app_->footer(topic.empty() ? more_of_first_ : topic == "all" ? more_of_all_ : "");
+  fmt::print(Printout(), "{}", app_->help());
+  return true;
+}
+
 void CommandLine::place(CLI::Option* option) {
   if (!hidden_) return;
   option->group("");
@@ -95,6 +133,14 @@ void CommandLine::add_config(std::vector<std::string> alternatives, std::vector<
                    "Take options from FILE, too, in TOML by their long names, as in 'distance = \"1%\"' and 'strict = "
                    "true'; what is given here counts instead")
       ->type_name("FILE");
+  const auto take = [this](const std::string& name) {
+    preset_ = name;
+    if (name == kAllPresets) throw CLI::Success();
+  };
+  app_->add_option_function<std::string>("--preset", take,
+                   "Options for a purpose: 'part', 'scan', 'fit', 'hollow', 'kerf' or 'layers'; 'help' shows what each "
+                   "of them is. What is given here, or in a file of --config, counts instead")
+      ->type_name("NAME");
 }
 
 /// False if the line asked only for help or the version, which are then printed.
@@ -105,21 +151,21 @@ bool CommandLine::understand(std::vector<std::string> reversed) {
   } catch (const CLI::Success& asked) {
     std::ostringstream text;
     app_->exit(asked, text, text);
-    fmt::print(Printout(), "{}", text.str());
+    fmt::print(Printout(), "{}", preset_ == kAllPresets ? presets_in_words() : text.str());
     return false;
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{} ({} lists the options)", error.what(), help_));
   }
 }
 
-std::vector<std::string> CommandLine::words_of_config() const {
+std::vector<std::string> CommandLine::words_of(const std::vector<ConfigEntry>& entries) const {
   const auto is_among = [](const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   const bool has_alternative = std::any_of(alternatives_.begin(), alternatives_.end(),
                                            [this](const std::string& name) { return has(("--" + name).c_str()); });
   std::vector<std::string> words;
-  for (const ConfigEntry& entry : read_config(config_)) {
+  for (const ConfigEntry& entry : entries) {
     require(!is_among(kept_out_, entry.name),
             fmt::format("{}: {}: expected on the command line alone, as a file may come from somebody else",
                         entry.place, entry.name));
@@ -189,15 +235,20 @@ std::string CommandLine::text_of(const CLI::Option& option, const std::string& g
 
 bool CommandLine::parse(int argc, const char* const* argv) {
   std::vector<std::string> reversed = reversed_arguments(argc, argv);
+  if (print_help(reversed)) return false;
   if (!understand(reversed)) return false;
-  if (app_->get_option_no_throw("--config") && app_->count("--config") > 0) {
-    require_values();
-    const std::vector<std::string> more = words_of_config();
+  require_values();
+  const auto add = [&](const std::vector<ConfigEntry>& entries) {
+    const std::vector<std::string> more = words_of(entries);
     reversed.insert(reversed.begin(), more.rbegin(), more.rend());
     for (Value& value : values_) value.texts.clear();
-    if (!understand(std::move(reversed))) return false;
-  }
-  require_values();
+    const bool goes_on = understand(reversed);
+    require_values();
+    return goes_on;
+  };
+  if (!config_.empty() && !add(read_config(config_))) return false;
+  // One that the file names counts as well, and what the file says itself comes first.
+  if (!preset_.empty()) add(parse_config("--preset " + preset_, std::string(preset_of(preset_).text)));
   for (const Value& value : values_) {
     if (value.option->count() == 0) continue;
     if (value.texts.empty()) value.take(text_of(*value.option, value.text));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,18 @@ class Option;
 
 namespace vdb_offset::tool {
 
+struct ConfigEntry;
+
 /// An option of a command line that was given, by its long name; a flag has no value.
 struct GivenOption {
   std::string name;
   std::optional<std::string> value;
+};
+
+/// Options that --help lists together: at most twelve, so that one finds among them.
+struct HelpTopic {
+  const char *name, *title;
+  std::vector<std::string> options;  ///< By their long names; those that a command does not have are left out.
 };
 
 /// The files and options of a command, as CLI11 finds them. Values are taken once the whole line has been understood,
@@ -36,7 +45,8 @@ class CommandLine {
 
   /// -V and --version, which print `version`.
   void add_version(const std::string& version);
-  /// --config, a file with values of options that the line does not have. One of `alternatives` on the line counts
+  /// --config, a file with values of options that the line does not have, and --preset, which names one that comes with
+  /// the command. One of `alternatives` on the line counts
   /// instead of all of them in the file. Names that are `passed_over` are options of other commands. A file that has a
   /// name that is `kept_out` is refused.
   void add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over = {},
@@ -44,6 +54,9 @@ class CommandLine {
   /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name;
   /// where it is not given, the file `input`, which other options name, may state its own.
   void add_unit(std::string& unit, const std::string& input);
+  /// --help lists those of `options` alone and says `more`, and which topics there are; `--help TOPIC` lists the options
+  /// of a topic, and `--help all` those of all, by their topics. `options` lives as long as this.
+  void arrange_help(std::span<const HelpTopic> topics, std::vector<std::string> options, std::string more);
   /// What is declared from here on is not listed in --help.
   void hide_what_follows() { hidden_ = true; }
   /// A file that the command cannot do without, by its position.
@@ -74,8 +87,12 @@ class CommandLine {
     Take take;
   };
   bool understand(std::vector<std::string> reversed);
-  /// What the file of --config says of options that were not given, as words. \throw UsageError
-  std::vector<std::string> words_of_config() const;
+  /// Prints what --help asks for if it is among the words. Returns whether it was.
+  bool print_help(const std::vector<std::string>& reversed);
+  /// Puts each option that is to be listed under a title, and takes all others off the list.
+  void list_for(const std::string& topic);
+  /// What a file of options says of those that were not given, as words. \throw UsageError
+  std::vector<std::string> words_of(const std::vector<ConfigEntry>& entries) const;
   void require_values() const;
   /// The text of an option as it is to be taken.
   std::string text_of(const CLI::Option& option, const std::string& given) const;
@@ -84,9 +101,12 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   const char* help_;
-  std::string config_;
+  std::string config_, preset_;
   std::vector<std::string> alternatives_, passed_over_, kept_out_;
   const std::string *unit_ = nullptr, *measured_ = nullptr;
+  std::span<const HelpTopic> topics_;
+  std::vector<std::string> first_options_;
+  std::string more_of_all_, more_of_first_;
   bool hidden_ = false;
   std::vector<const CLI::Option*> hidden_options_;
   std::deque<Value> values_;  // CLI11 keeps references to their texts

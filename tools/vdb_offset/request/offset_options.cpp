@@ -6,6 +6,7 @@
 
 #include "page/run_pages.h"
 #include "request/command_line.h"
+#include "request/help.h"
 #include "request/offset_options.h"
 #include "request/option_rules.h"
 #include "request/option_values.h"
@@ -15,46 +16,6 @@
 
 namespace vdb_offset::tool {
 namespace {
-
-constexpr const char* kAbout =
-    "Offsets a mesh by a distance and keeps its topology: the same vertices in the same order, the same faces,\n"
-    "texture coordinates, groups and materials; only positions (and normals) change.";
-
-constexpr const char* kMore = R"(
-INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
-behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, a CAD
-model (.step .stp .iges .igs .brep), which is tessellated, and whose offset may be one (.step .stp .brep), a level set
-(.vdb), which OUTPUT may be as well with --mode iso, or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
-of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
-face.
-D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
-below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which gives each vertex its
-own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
-functions (sin, sqrt, min ...); a % behind it makes it percent. Several distances give several outputs: NAME_001.obj,
-NAME_002.obj ..., or OUTPUT holds {i} (their number) or {d} (the distance as given).
-
-Examples:
-  vdb_offset bunny.obj bigger.obj --distance 1%         enlarge by 1 % of the diagonal
-  vdb_offset part.stl clearance.stl --distance -0.2     shrink by 0.2 units
-  vdb_offset wing.ply out.ply --distance 0.5% --report out.json --strict
-  vdb_offset big.obj out.obj --distance 2 --dry-run     what would it take?
-  vdb_offset wing.obj skin.obj --distance '0.02*(1 - u)'       thicker towards u = 0
-  vdb_offset car.obj out.obj --distance 5 --only group=roof    one part; the rest stays
-  vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
-  vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
-  vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
-  vdb_offset part.stl out.stl --distance-xy -0.1 --distance-z -0.05      less across than up
-  vdb_offset peg.stl out.stl --fit socket.stl --clearance 0.1           makes room where there is less
-  vdb_offset part.obj out.obj --distance 1% --tolerance 2%     faces at the distance, too, to 2 % of it
-  vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
-  vdb_offset scenes/torus.json torus.obj                a procedural scene
-  vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
-  vdb_offset batch models bigger --distance 1%          a folder of models (vdb_offset batch --help)
-
-Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
-met, or more than --max-faces needed), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
-once they are put in place, all together, a signal changes nothing more.
-Report keys, library and guarantees: see the guides in docs/.)";
 
 constexpr int kMostLayers = 1000;  // --layers: so that a mistyped number does not fill the memory; not measured
 constexpr double kAny = std::numeric_limits<double>::max();
@@ -80,11 +41,11 @@ void declare_distances(CommandLine& line, Draft& draft) {
                 draft.is_iso = parse_word("--mode", text, {"topology", "iso"}) == 1;
               });
   line.option("--corners", "KIND",
-              "At sharp corners 'round' puts vertices at the distance, and faces beside them are nearer; 'miter' puts "
-              "faces at the distance, and vertices on creases are farther [round]",
+              "At sharp corners 'miter' puts faces at the distance, and vertices on sharp edges are farther; 'round' puts "
+              "vertices at the distance, and faces around sharp edges are nearer [miter; with --layers round]",
               [&request](const std::string& text) { request.corners = parse_corners(text); });
   line.option("--miter-limit", "L",
-              "With --corners miter: a vertex goes no farther than so many distances, at least 1 [4]",
+              "A vertex on a sharp edge goes no farther than this many distances, at least 1 [4]",
               [&request](const std::string& text) { request.miter_limit = parse_miter_limit(text); });
   line.option(
       "--adaptivity", "X",
@@ -165,7 +126,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
   line.repeated(
       "--symmetry", "PLANE",
       "A plane that what lies on it stays in: 'x=0', 'y=1.5', 'z=-2', or 'A,B,C,D' for A x + B y + C z = D; may "
-      "be repeated; 'none': not even borders stay in the planes that they lie in, as they do by default",
+      "be repeated; 'none' also switches off the automatic planes of borders",
       [&request](const std::string& text) { take_plane(text, request); });
   line.repeated("--obstacle", "FILE",
                 "A mesh that the offset must not touch; distances are not measured from it; may be repeated",
@@ -213,13 +174,12 @@ void declare_products(CommandLine& line, Draft& draft) {
             "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
             draft.layers.structured);
   line.flag("--close",
-            "Of curves: close those with ends near each other, by a straight segment, as over the base of a "
-            "blunt trailing edge",
+            "Curves: join ends that nearly meet, as at a blunt trailing edge",
             request.close);
   line.option(
       "--flatten", "TOL",
-      "Of SVG and DXF drawings: replace curved segments by straight ones, no farther than this from them: world "
-      "units, or percent of the drawing's diagonal [0.001%]",
+      "SVG and DXF: replace curved segments by straight ones at most this far off: world units, or percent of the "
+      "drawing's diagonal [0.001%]",
       [&request](const std::string& text) { request.flatten = parse_flatten(text); });
 }
 
@@ -233,15 +193,15 @@ void take_plane(const std::string& text, Request& request) {
 
 void declare_part_distances(CommandLine& line, Request& request) {
   line.repeated("--distance-of", "PART:D",
-                "The distance of a part, as --distance, in place of that of all: PART as for --only, as in face=3:0.4; "
-                "may be repeated, and the last that names a face counts",
+                "A different distance for one part: PART as for --only, as in face=3:0.4; may be repeated, the last that "
+                "names a face counts",
                 [&request](const std::string& text) {
                   request.distance_of_texts.push_back(text);
                   request.distances_of.push_back(parse_distance_of_part(text, request));
                 });
   line.option("--blend", "L",
               "With --distance-of, or a CAD model and distances in u and v: distances of parts change into each other "
-              "over this length on both sides of their edges: world units, or percent of the diagonal [they do not]",
+              "over this length on both sides of their edges: world units, or percent of the diagonal [off]",
               [&request](const std::string& text) {
                 request.blend_text = text;
                 request.blend = parse_blend(text);
@@ -253,9 +213,9 @@ void complete_part_distances(Request& request) {
 }
 
 void declare_level_set(CommandLine& line, Request& request) {
-  line.option("--grid", "NAME", "Of .vdb files: the grid whose surface is the mesh [the only level set]",
+  line.option("--grid", "NAME", ".vdb files: the grid whose surface is the mesh [the only level set]",
               request.level_set.grid);
-  line.option("--isovalue", "V", "Of .vdb files: the value on that surface; needed where the grid is no level set [0]",
+  line.option("--isovalue", "V", ".vdb files: the value on that surface; needed if the grid is not a level set [0]",
               [&request](const std::string& text) {
                 request.level_set.isovalue = parse_number("--isovalue", text, "a number", -kAny, kAny);
               });
@@ -264,15 +224,15 @@ void declare_level_set(CommandLine& line, Request& request) {
 void declare_cad(CommandLine& line, Request& request) {
   line.option(
       "--deflection", "TOL",
-      "Of CAD models: no triangle is farther than this from the face that it stands for: world units, or percent "
-      "of the diagonal [a hundredth of the distance]",
+      "CAD models: triangles are at most this far from the model's face: world units, or percent of the diagonal [a "
+      "hundredth of the distance]",
       [&request](const std::string& text) { request.deflection = parse_deflection(text); });
   line.option("--angle", "A",
-              "Of CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",
+              "CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",
               [&request](const std::string& text) {
                 request.angle = parse_number("--angle", text, "a number above 0, up to 90", 0, 90);
               });
-  line.option("--cad-seconds", "S", "Of CAD models: how long OpenCASCADE may take for one in all [300; in a batch 60]",
+  line.option("--cad-seconds", "S", "CAD models: how long OpenCASCADE may take for one model in all [300; in a batch 60]",
               [&request](const std::string& text) {
                 request.cad_seconds = parse_number("--cad-seconds", text, "a number above 0", 0, kAny);
               });
@@ -374,7 +334,7 @@ void declare_files(CommandLine& line, Draft& draft) {
 /// Declares the options for the run as a whole.
 void declare_run(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
-  line.flag("--no-sync", "Do not wait until outputs are on the disk before they get their names", draft.no_sync);
+  line.flag("--no-sync", "Skip fsync before renaming outputs", draft.no_sync);
   line.flag("--strict",
             "Exit with 3 if a vertex in use falls short of its distance, a cell of layers is not valid, an obstacle or "
             "the mesh to fit is nearer than asked, or not all of the area is proven to be within --tolerance",
@@ -383,6 +343,9 @@ void declare_run(CommandLine& line, Draft& draft) {
               "Exit with 3 unless 99 % of the faces' area is within P percent of the distance; of layers, at the first "
               "height and outermost",
               [&request](const std::string& text) { request.strict_faces = parse_strict_faces(text); });
+  line.option("--strict-certified", "P",
+              "With --tolerance: exit with 3 unless P percent of the area is certified to be within it",
+              [&request](const std::string& text) { request.strict_certified = parse_strict_certified(text); });
   line.flag("--dry-run", "Read the input, print what would be done, write nothing", request.dry_run);
   line.flag("-q,--quiet", "Print nothing but errors", request.quiet);
   line.flag("-v,--verbose", "Print the mesh's facts and the seconds of each stage", request.verbose);
@@ -425,7 +388,8 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
 
 std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   Draft draft;
-  CommandLine line("vdb_offset", kAbout, kMore, "--help");
+  CommandLine line("vdb_offset", kAbout, kMore, "--help all");
+
   line.add_version(std::string("vdb_offset ") + version());
   line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
             draft.request.input);
@@ -433,6 +397,8 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   line.add_config(options_of_distance(), {"output", "models", "jobs", "reports", "retry-failed", "slurm"},
                   {"sshlogin"});
   declare_offset_options(line, draft);
+  line.arrange_help(help_topics(), {"distance", "preset", "corners", "tolerance", "only", "shell", "mode", "layers"},
+                    kMoreOfFirst);
   if (!line.parse(argc, argv)) return std::nullopt;
   require_together(line, draft.is_iso);
   complete(line, draft);

@@ -86,7 +86,7 @@ void require_for_mesh(const Request& request) {
       io::volume_format_of(request.output).has_value() || io::structured_format_of(request.output).has_value();
   // A .vtu is a mesh of cells with --layers, and one of faces without.
   require(!volume || request.layers || format_of(request.output, request),
-          request.output + ": expected a mesh, as this is for --layers");
+          request.output + ": not a mesh format. Use .obj, .ply, .stl ..., or --layers for cells");
   require_structured(request);
   const bool is_model = is_cad_output(request.output, request);
   require(is_model || (!request.faceted && request.fit_tolerance == 0),
@@ -134,7 +134,7 @@ void require_endings(const Request& request) {
 /// Rules for --tolerance: one offset of a mesh, in which each vertex of the source is one of the result.
 void require_together_with_tolerance(const CommandLine& line, bool is_iso) {
   const bool is_given = line.has("--tolerance");
-  require_with(line, is_given, "--tolerance", {"--max-faces", "--refined-source", "--map"});
+  require_with(line, is_given, "--tolerance", {"--max-faces", "--refined-source", "--map", "--strict-certified"});
   require(!is_given || !is_iso, "--tolerance and --mode iso exclude each other");
   require_without(line, is_given, "--tolerance",
                   {"--distance-xy", "--distance-z", "--distance-of", "--blend", "--fit", "--shell", "--layers",
@@ -212,9 +212,8 @@ void require_page(const Request& request) {
 }
 
 void require_miters(const Request& request) {
-  // A scene may bring mitred corners.
-  const bool may_be_mitred = request.corners ? request.corners == Corners::Miter : scene::is_scene(request.input);
-  require(!request.miter_limit || may_be_mitred, "--miter-limit needs --corners miter");
+  const bool are_round = request.corners ? request.corners == Corners::Round : request.layers.has_value();
+  require(!request.miter_limit || !are_round, "--miter-limit needs --corners miter");
 }
 
 void require_sound(const Request& request) {

@@ -149,8 +149,9 @@ Border parse_border(const std::string& text) {
 }
 
 Corners parse_corners(const std::string& text) {
-  constexpr Corners kCorners[] = {Corners::Round, Corners::Miter};
-  return kCorners[parse_word("--corners", text, {"round", "miter"})];
+  if (text == "mitre") return Corners::Miter;
+  constexpr Corners kCorners[] = {Corners::Miter, Corners::Round};
+  return kCorners[parse_word("--corners", text, {"miter", "round"})];
 }
 
 double parse_miter_limit(const std::string& text) {
@@ -159,8 +160,13 @@ double parse_miter_limit(const std::string& text) {
 }
 
 double parse_strict_faces(const std::string& text) {
-  return parse_number("--strict-faces", text, "a percentage of 0 or more", -std::numeric_limits<double>::denorm_min(),
+  return parse_number("--strict-faces", text.ends_with('%') ? text.substr(0, text.size() - 1) : text, "a percentage of 0 or more", -std::numeric_limits<double>::denorm_min(),
                       std::numeric_limits<double>::max());
+}
+
+double parse_strict_certified(const std::string& text) {
+  return parse_number("--strict-certified", text.ends_with('%') ? text.substr(0, text.size() - 1) : text,
+                      "a percentage above 0, up to 100", 0, 100);
 }
 
 Tolerance parse_tolerance(const std::string& text) {

@@ -74,6 +74,8 @@ double parse_miter_limit(const std::string& text);
 
 /// Percent, 0 or more.
 double parse_strict_faces(const std::string& text);
+/// A percentage, with or without its sign.
+double parse_strict_certified(const std::string& text);
 
 /// A length in world units, or percent of the distance.
 Tolerance parse_tolerance(const std::string& text);

@@ -118,8 +118,15 @@ struct Request {
   std::optional<io::Format> format;              ///< Of files with an ending that names none.
   io::WriteOptions write;                        ///< All but its format, which is the output's alone.
   OutputFiles::Sync sync = OutputFiles::Sync::Yes;
-  std::optional<double> strict_faces;  ///< Percent.
+  std::optional<double> strict_faces;      ///< Percent.
+  std::optional<double> strict_certified;  ///< Percent.
   bool strict = false, dry_run = false, quiet = false, verbose = false;
+
+  /// The share of the area that has to be certified to be within the tolerance; none: it is not judged.
+  std::optional<double> certified_asked() const {
+    if (strict_certified) return *strict_certified / 100;
+    return strict ? std::optional(1.0) : std::nullopt;
+  }
 };
 
 /// Reads the command line of an offset. Empty if it asked only for help or the version, which are then printed.

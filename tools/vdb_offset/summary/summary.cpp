@@ -77,22 +77,19 @@ void print_details(std::FILE* out, const OffsetStatistics& statistics, const Dis
     fmt::print(out, "{:<10} {:.3f} s\n", name(static_cast<Stage>(s)), statistics.seconds[s]);
 }
 
-void print_disagreeing(std::FILE* out, const Job& job, const OffsetStatistics& statistics) {
-  if (statistics.disagreeing_distances > 0)
-    fmt::print(out, "{} {} share a position with one that was given a different distance; the mean is used\n",
-               statistics.disagreeing_distances, job.curves() ? "points" : "vertices");
-}
-
-/// Prints the gap between a result and its obstacles, and that of the source.
-void print_obstacles(std::FILE* out, const ObstacleFacts& obstacles, double clearance) {
-  fmt::print(out, "gap to obstacles {:.6g}, {:.6g} at the start", obstacles.gap, obstacles.starting_gap);
+/// The gap between a result and its obstacles, and that of the source.
+void add_obstacles(const ObstacleFacts& obstacles, double clearance, Remarks& remarks) {
+  const std::string gap =
+      fmt::format("gap to obstacles {:.6g}, {:.6g} at the start", obstacles.gap, obstacles.starting_gap);
   if (obstacles.near > 0)
-    fmt::print(out, ": {} triangles {} one", obstacles.near,
-               clearance > 0 ? fmt::format("are nearer than {:.6g} to", clearance) : "touch");
-  fmt::print(out, "\n");
+    remarks.add(Gravity::Wrong, fmt::format("{}: {} triangles {} one", gap, obstacles.near,
+                                            clearance > 0 ? fmt::format("are nearer than {:.6g} to", clearance)
+                                                          : "touch"));
+  else remarks.add(Gravity::Detail, gap);
   if (obstacles.touching + obstacles.crossing > 0)
-    fmt::print(out, "at the start {} pairs of the input's triangles and obstacles' touch, {} go through each other\n",
-               obstacles.touching, obstacles.crossing);
+    remarks.add(Gravity::Input, fmt::format("already in the input {} pairs of triangles of it and of obstacles touch, "
+                                            "{} intersect",
+                                            obstacles.touching, obstacles.crossing));
 }
 
 /// Gaps of what is written: of a CAD model its own, and not those of the mesh. Nothing where that is not whole.
@@ -105,35 +102,53 @@ std::optional<ObstacleFacts> obstacles_of(const OffsetStatistics& statistics, co
   return facts;
 }
 
-void print_fit(std::FILE* out, const FitFacts& fit) {
-  fmt::print(out, "gap {:.9g}, {:.6g} at the start: {} of {} triangles are still nearer than {:.6g}", fit.gap,
-             fit.starting_gap, fit.near, fit.near_at_start, fit.clearance);
-  fmt::print(out, "; {} vertices gave way, by {:.6g} at most\n", fit.moved, fit.deepest);
-  if (!fit.is_signed)
-    fmt::print(out,
-               "the other mesh is not closed, or its faces do not agree about the outside: each side of it is one\n");
-  if (fit.enclosed > 0)
-    fmt::print(out, "{} components of the other mesh lie inside of the result: nothing can give way to them\n",
-               fit.enclosed);
+std::string fit_in_words(const FitFacts& fit) {
+  std::string text = fmt::format("gap {:.9g}, {:.6g} at the start; {} vertices gave way, by {:.6g} at most", fit.gap,
+                                 fit.starting_gap, fit.moved, fit.deepest);
+  if (fit.near > 0)
+    text += fmt::format("; {} of {} triangles are still nearer than {:.6g}", fit.near, fit.near_at_start, fit.clearance);
+  return text;
 }
 
-void print_states(std::FILE* out, const OffsetResult& result) {
-  const auto in = [&](VertexState state) {
-    return result.statistics.vertices_by_state[static_cast<std::size_t>(state)];
+void add_fit(const FitFacts& fit, Remarks& remarks) {
+  if (!fit.is_signed)
+    remarks.add(Gravity::Input, "the mesh to fit is not closed or inconsistently oriented: both sides of it keep clear");
+  if (fit.enclosed > 0)
+    remarks.add(Gravity::Wrong, fmt::format("{} pieces of the mesh to fit lie inside the result: nothing can give way "
+                                            "to them",
+                                            fit.enclosed));
+}
+
+/// How many vertices reached the distance, which `asked` names, and what became of the others.
+std::string vertices_in_words(const OffsetResult& result, const AchievedSummary& achieved, const std::string& asked,
+                              bool curves) {
+  std::string text = fmt::format("{} % of {} {} reached {}", area_percent(achieved.share_reached, 3),
+                                 achieved.vertices, curves ? "points" : "vertices", asked);
+  const auto add = [&](VertexState state, const char* words) {
+    if (const std::size_t count = result.statistics.vertices_by_state[static_cast<std::size_t>(state)]; count > 0)
+      text += fmt::format(", {} {}", count, words);
   };
-  if (in(VertexState::Mitred)) fmt::print(out, ", {} of them mitred", in(VertexState::Mitred));
-  if (in(VertexState::Cut)) fmt::print(out, ", {} miters cut", in(VertexState::Cut));
-  if (in(VertexState::Collision)) fmt::print(out, ", {} stopped by collision", in(VertexState::Collision));
-  if (in(VertexState::Limited)) fmt::print(out, ", {} held back to stay valid", in(VertexState::Limited));
-  if (in(VertexState::OutsideField)) fmt::print(out, ", {} outside the field", in(VertexState::OutsideField));
+  add(VertexState::Collision, "stopped by collision");
+  add(VertexState::Limited, "held back to stay valid");
+  add(VertexState::OutsideField, "outside the field");
+  return text;
+}
+
+void add_miters(const OffsetStatistics& statistics, Remarks& remarks) {
+  const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
+  if (in(VertexState::Mitred) + in(VertexState::Cut) > 0)
+    remarks.add(Gravity::Detail,
+                fmt::format("{} vertices on sharp edges are farther than the distance (miters), {} of them cut at "
+                            "--miter-limit",
+                            in(VertexState::Mitred) + in(VertexState::Cut), in(VertexState::Cut)));
 }
 
 /// Nothing where every vertex of the offset belongs to an edge.
-void print_exactness(std::FILE* out, const ExactFacts& exact) {
-  if (exact.vertices == 0) return;
-  fmt::print(
-      out, "from the faces of the CAD model, {} vertices are off their distance by {:.2g} on average, {:.2g} at most\n",
-      exact.vertices, exact.mean, exact.worst);
+void add_exactness(const ExactFacts& exact, Remarks& remarks) {
+  if (exact.vertices > 0)
+    remarks.add(Gravity::Detail, fmt::format("measured from the faces of the CAD model, {} vertices are off their "
+                                             "distance by {:.2g} on average, {:.2g} at most",
+                                             exact.vertices, exact.mean, exact.worst));
 }
 
 void print_cad(std::FILE* out, const std::string& path, const CadFileFacts& cad) {
@@ -149,41 +164,52 @@ void print_cad(std::FILE* out, const std::string& path, const CadFileFacts& cad)
   fmt::print(out, "\n");
 }
 
-void print_shell(std::FILE* out, const std::string& path, const ShellFacts& shell) {
-  fmt::print(out, "{}: shell {}{}, {}, volume {:.6g}, rim of {} quads and {} triangles", path,
-             shell.has_thickness ? "" : "without any thickness, ", shell.closed ? "closed" : "not closed",
-             shell.oriented ? "oriented" : "not oriented", shell.volume, shell.rim_quads, shell.rim_triangles);
-  if (shell.junction_vertices) {
-    fmt::print(out, ", {} vertices at junctions of sheets", shell.junction_vertices);
-    if (shell.short_junctions) fmt::print(out, " ({} of them held back)", shell.short_junctions);
-  }
-  if (shell.border_edges_left) fmt::print(out, ", {} border edges left", shell.border_edges_left);
-  if (shell.non_manifold_edges) fmt::print(out, ", {} non-manifold edges", shell.non_manifold_edges);
-  if (shell.pinched_vertices) fmt::print(out, ", without thickness at {} vertices", shell.pinched_vertices);
-  if (shell.crossings) fmt::print(out, ", {} pairs of triangles meet", shell.crossings);
-  if (shell.source_crossings + shell.crossings_near_source)
-    fmt::print(out, ", {} where the source crosses itself ({} of them its own)",
-               shell.source_crossings + shell.crossings_near_source, shell.source_crossings);
-  fmt::print(out, "\n");
+std::string shell_in_words(const ShellFacts& shell) {
+  return fmt::format("shell {}{}{}, volume {:.6g}", shell.closed ? "closed" : "not closed",
+                     shell.oriented ? "" : ", not oriented", shell.has_thickness ? "" : ", without any thickness",
+                     shell.volume);
 }
 
-/// Says which parts of the mesh have an inside, and how that is known.
-void print_solids(std::FILE* out, const IsoStatistics& found) {
+void add_shell(const ShellFacts& shell, Remarks& remarks) {
+  if (shell.crossings > 0)
+    remarks.add(Gravity::Wrong, fmt::format("the shell intersects itself at {} triangle pairs", shell.crossings));
+  if (shell.border_edges_left > 0)
+    remarks.add(Gravity::Wrong, fmt::format("the shell is open at {} edges", shell.border_edges_left));
+  if (shell.non_manifold_edges > 0)
+    remarks.add(Gravity::Off, fmt::format("the shell has {} edges of more than two faces", shell.non_manifold_edges));
+  if (shell.pinched_vertices > 0)
+    remarks.add(Gravity::Off, fmt::format("the shell has no thickness at {} vertices. Use a smaller distance there",
+                                          shell.pinched_vertices));
+  if (shell.short_junctions > 0)
+    remarks.add(Gravity::Off, fmt::format("{} of {} vertices where sheets meet are held back", shell.short_junctions,
+                                          shell.junction_vertices));
+  if (shell.source_crossings + shell.crossings_near_source > 0)
+    remarks.add(Gravity::Input,
+                fmt::format("the input intersects itself at {} triangle pairs (not repaired); the shell has {} near them",
+                            shell.source_crossings, shell.crossings_near_source));
+  if (shell.rim_quads + shell.rim_triangles + shell.junction_vertices > 0)
+    remarks.add(Gravity::Detail, fmt::format("rim of {} quads and {} triangles, {} vertices where sheets meet",
+                                             shell.rim_quads, shell.rim_triangles, shell.junction_vertices));
+}
+
+/// Which parts of the mesh have an inside, and how that is known.
+void add_solids(const IsoStatistics& found, Remarks& remarks) {
   const SolidFacts& solid = found.solid;
   if (!found.is_signed)
-    fmt::print(out,
-               "the input is not closed, or its faces do not agree about the outside: the surface is on all its "
-               "sides\n");
+    remarks.add(Gravity::Wrong,
+                "the input is not closed or inconsistently oriented: the surface goes around it, on all sides");
   else if (solid.open_parts > 0)
-    fmt::print(out, "{} of {} parts of the input are open, and have no inside\n", solid.open_parts, solid.parts);
+    remarks.add(Gravity::Wrong, fmt::format("{} of {} parts of the input are open: the surface goes around them, on all "
+                                            "sides",
+                                            solid.open_parts, solid.parts));
   if (solid.holes > 0)
-    fmt::print(out,
-               "{} hole{} of the input ({:.2g} % of its area) filled, so that it has an inside (--inside never takes "
-               "it as open)\n",
-               solid.holes, solid.holes == 1 ? "" : "s", 100 * solid.hole_share);
+    remarks.add(Gravity::Input, fmt::format("{} hole{} of the input ({:.2g} % of its area) filled, so that it has an "
+                                            "inside (--inside never: treat it as open)",
+                                            solid.holes, plural(solid.holes), 100 * solid.hole_share));
   if (solid.buried + solid.cut > 0)
-    fmt::print(out, "{} triangles of the input are buried inside it, {} in part: distances are to the others\n",
-               solid.buried + solid.cut, solid.cut);
+    remarks.add(Gravity::Detail, fmt::format("{} triangles of the input are buried inside it, {} of them in part; "
+                                             "distances are measured to the others",
+                                             solid.buried + solid.cut, solid.cut));
 }
 
 void print_iso_plan(std::FILE* out, const IsoStatistics& statistics, double distance) {
@@ -196,15 +222,23 @@ void print_iso_plan(std::FILE* out, const IsoStatistics& statistics, double dist
              static_cast<double>(plan.bytes) / 1048576.0);
 }
 
-/// In layers, what became of corners.
-void print_layers_corners(std::FILE* out, const Job& job, const MiterFacts& miters) {
-  if (job.options.corners == Corners::Round || miters.on_creases == 0) return;
+/// What became of sharp corners in layers.
+void add_layers_corners(const Job& job, const MiterFacts& miters, Remarks& remarks) {
+  if (job.corners() == Corners::Round || miters.on_creases == 0) return;
   const std::size_t round = miters.unproven + miters.taken_back;
-  fmt::print(out, "corners: {} mitred", miters.mitred);
-  if (miters.cut > 0) fmt::print(out, ", {} cut at the limit", miters.cut);
-  if (round > 0) fmt::print(out, ", {} left round", round);
-  fmt::print(out, "{}\n",
-             miters.cut + round > 0 ? ": beside those that are not mitred layers are thinner on the faces" : "");
+  if (miters.cut + round > 0)
+    remarks.add(Gravity::Off, fmt::format("layers are thinner at {} sharp corners: {} miters are cut at --miter-limit, "
+                                          "{} have no room",
+                                          miters.cut + round, miters.cut, round));
+  remarks.add(Gravity::Detail, fmt::format("{} sharp corners have miters", miters.mitred));
+}
+
+/// The distance as it stands in a verdict.
+std::string asked_in_words(const Distances& distances, const AchievedSummary& achieved) {
+  const std::string least = fmt::format("{:.6g}", achieved.asked_least),
+                    most = fmt::format("{:.6g}", achieved.asked_most);
+  if (distances.uniform()) return fmt::format("{:.6g}", distances[0]);
+  return least == most ? least : fmt::format("its distance ({} to {})", least, most);
 }
 
 }  // namespace
@@ -213,8 +247,10 @@ void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Dis
   const Printout out;
   print_facts(out, statistics.facts, job.curves());
   print_plan(out, statistics, farthest);
-  print_seams(out, statistics.facts.seams, std::abs(farthest.farthest()));
-  if (!job.curves()) print_orientation(out, statistics.facts, job.options.orient);
+  Remarks remarks;
+  if (!job.curves()) add_orientation(statistics.facts, job.options.orient, remarks);
+  add_seams(statistics.facts.seams, std::abs(farthest.farthest()), remarks);
+  remarks.print(out, true);
 }
 
 void print_fit_dry_run(const Job& job, const OffsetStatistics& statistics) {
@@ -227,7 +263,9 @@ void print_fit_dry_run(const Job& job, const OffsetStatistics& statistics) {
   fmt::print(out, "\n");
   if (statistics.plan.voxel_size > 0) print_grid(out, statistics);
   else fmt::print(out, "estimate   {:.1f} MiB\n", static_cast<double>(statistics.plan.bytes) / 1048576.0);
-  print_orientation(out, statistics.facts, job.options.orient);
+  Remarks remarks;
+  add_orientation(statistics.facts, job.options.orient, remarks);
+  remarks.print(out, true);
 }
 
 void print_summary(const Job& job, const Outcome& outcome, const Products& made, double total_seconds) {
@@ -235,52 +273,55 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
   // Whose faces are not the mesh's.
   const bool is_cad_model = made.cad && made.cad->made != CadFileFacts::Made::Facets;
   const OffsetResult& result = outcome.result;
+  const OffsetStatistics& statistics = result.statistics;
   const AchievedSummary achieved = summarise(result);
-  const char* const vertices = job.curves() ? "points" : "vertices";
-  if (job.request.verbose) print_details(out, result.statistics, result.distances, job.curves());
-  const std::string least = fmt::format("{:.6g}", achieved.asked_least),
-                    most = fmt::format("{:.6g}", achieved.asked_most);
-  const std::string asked = result.distances.uniform() ? fmt::format("{:.6g}", result.distances[0])
-                            : least == most            ? least
-                                                       : fmt::format("{} to {}", least, most);
-  fmt::print(out, "{}: {}{} {} at {}: {:.3f} % reached", outcome.to.mesh, is_cad_model ? "as a mesh, " : "",
-             achieved.vertices, vertices, asked, 100 * achieved.share_reached);
-  print_states(out, result);
-  if (!is_cad_model) print_faces(out, result.statistics.faces, job.curves());
-  if (result.statistics.certified)
-    print_certified(out, *result.statistics.certified, faces_in(result.statistics.facts));
+  const bool verbose = job.request.verbose, knows_faces = !is_cad_model && statistics.faces.samples > 0;
+  if (verbose) print_details(out, statistics, result.distances, job.curves());
+  const std::string asked = asked_in_words(result.distances, achieved);
+  fmt::print(out, "{}: {}", outcome.to.mesh, is_cad_model ? "as a mesh, " : "");
+  if (statistics.certified) fmt::print(out, "{}; ", certified_in_words(*statistics.certified));
+  else if (knows_faces) fmt::print(out, "{}; ", faces_in_words(statistics.faces, asked, job.curves()));
+  fmt::print(out, "{}",
+             vertices_in_words(result, achieved, statistics.certified || !knows_faces ? asked : "it", job.curves()));
+  if (statistics.fit) fmt::print(out, "; {}", fit_in_words(*statistics.fit));
+  if (made.shell) fmt::print(out, "; {}", shell_in_words(*made.shell));
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
-  if (result.statistics.exact) print_exactness(out, *result.statistics.exact);
-  if (made.shell) print_shell(out, outcome.to.mesh, *made.shell);
   if (made.cad) print_cad(out, outcome.to.mesh, *made.cad);
-  print_disagreeing(out, job, result.statistics);
-  if (result.statistics.fit) print_fit(out, *result.statistics.fit);
-  if (const auto obstacles = obstacles_of(result.statistics, made))
-    print_obstacles(out, *obstacles, job.options.clearance);
-  if (!is_cad_model) print_face_causes(out, job, result.statistics);
-  print_doubts(out, job, result.statistics, result.distances);
+  Remarks remarks;
+  if (const auto obstacles = obstacles_of(statistics, made))
+    add_obstacles(*obstacles, job.options.clearance, remarks);
+  if (statistics.fit) add_fit(*statistics.fit, remarks);
+  if (made.shell) add_shell(*made.shell, remarks);
+  if (statistics.certified) add_certified(*statistics.certified, faces_in(statistics.facts), remarks);
+  if (!is_cad_model) add_faces(job, statistics, remarks);
+  if (statistics.exact) add_exactness(*statistics.exact, remarks);
+  add_miters(statistics, remarks);
+  add_input(job, statistics, result.distances, remarks);
+  remarks.print(out, verbose);
 }
 
 void print_iso_dry_run(const Job& job, const IsoStatistics& statistics, double distance) {
   const Printout out;
   print_iso_plan(out, statistics, distance);
-  print_seams(out, statistics.source.seams, std::abs(distance));
-  print_orientation(out, statistics.source, job.options.orient);
+  Remarks remarks;
+  add_orientation(statistics.source, job.options.orient, remarks);
+  add_seams(statistics.source.seams, std::abs(distance), remarks);
+  remarks.print(out, true);
 }
 
 void print_hollow_summary(const Job& job, const std::string& path, double distance, const Hollow& hollow,
                           const IsoResult& iso, const IsoResult* inner, double total_seconds) {
+  const ShellFacts& shell = hollow.facts;
+  {
+    const Printout out(output_is_taken(job));
+    fmt::print(out, "{}: hollow solid, {}{}, volume {:.6g}\n", path, shell.closed ? "closed" : "not closed",
+               shell.oriented ? "" : ", not oriented", shell.volume);
+    Remarks remarks;
+    add_shell(shell, remarks);
+    remarks.print(out, job.request.verbose);
+  }
   print_iso_summary(job, path, distance, iso, total_seconds);
   if (inner) print_iso_summary(job, path, inner->statistics.distance, *inner, total_seconds);
-  const ShellFacts& shell = hollow.facts;
-  const Printout out(output_is_taken(job));
-  fmt::print(out, "{}: hollow solid {}, {}, volume {:.6g}, {} pairs of triangles meet", path,
-             shell.closed ? "closed" : "not closed", shell.oriented ? "oriented" : "not oriented", shell.volume,
-             shell.crossings);
-  if (shell.border_edges_left) fmt::print(out, ", {} border edges left", shell.border_edges_left);
-  if (shell.non_manifold_edges) fmt::print(out, ", {} non-manifold edges", shell.non_manifold_edges);
-  if (shell.source_crossings) fmt::print(out, ", {} of the source's own", shell.source_crossings);
-  fmt::print(out, "\n");
 }
 
 void print_iso_summary(const Job& job, const std::string& path, double distance, const IsoResult& result,
@@ -288,7 +329,8 @@ void print_iso_summary(const Job& job, const std::string& path, double distance,
   const Printout out(output_is_taken(job));
   const IsoStatistics& found = result.statistics;
   const MeshFaults& left = found.mending.left;
-  if (job.request.verbose) {
+  const bool verbose = job.request.verbose;
+  if (verbose) {
     print_iso_plan(out, found, distance);
     for (const Stage stage : kIsoStages)
       fmt::print(out, "{:<10} {:.3f} s\n", name(stage), found.seconds[static_cast<std::size_t>(stage)]);
@@ -298,32 +340,51 @@ void print_iso_summary(const Job& job, const std::string& path, double distance,
                level_set->active_voxels, level_set->voxel_size);
   fmt::print(out, "{}: {} vertices and {} triangles at {:.6g}: {} component{}, {}, {}, {} crossing{}",
              level_set ? "surface" : path, found.vertices, found.triangles, distance, found.components,
-             found.components == 1 ? "" : "s", found.closed() ? "closed" : "not closed",
-             found.manifold() ? "manifold" : "not manifold", left.crossings, left.crossings == 1 ? "" : "s");
-  if (left.needles > 0) fmt::print(out, ", {} triangles without area", left.needles);
-  fmt::print(out, ", distance off by {:.2g} at most", found.worst_error);
-  print_faces(out, found.faces, false);
+             plural(found.components), found.closed() ? "closed" : "not closed",
+             found.manifold() ? "manifold" : "not manifold", left.crossings, plural(left.crossings));
+  if (found.faces.samples > 0) fmt::print(out, "; {}", faces_in_words(found.faces, "it", false));
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
-  print_iso_cause(out, found.faces);
+  Remarks remarks;
+  add_iso_cause(found.faces, remarks);
+  if (left.needles > 0) remarks.add(Gravity::Off, fmt::format("{} triangles have no area", left.needles));
   if (found.dropped_specks > 0)
-    fmt::print(out, "{} speck{} dropped that enclosed less than a voxel of {:.6g} (--keep-specks keeps them)\n",
-               found.dropped_specks, found.dropped_specks == 1 ? "" : "s", found.plan.voxel_size);
-  print_solids(out, found);
-  print_seams(out, found.source.seams, std::abs(distance));
-  print_orientation(out, found.source, job.options.orient);
+    remarks.add(Gravity::Input, fmt::format("{} speck{} smaller than a voxel of {:.6g} dropped (--keep-specks: do not)",
+                                            found.dropped_specks, plural(found.dropped_specks),
+                                            found.plan.voxel_size));
+  remarks.add(Gravity::Detail, fmt::format("vertices are off the distance by {:.2g} at most", found.worst_error));
+  add_solids(found, remarks);
+  add_orientation(found.source, job.options.orient, remarks);
+  add_seams(found.source.seams, std::abs(distance), remarks);
+  remarks.print(out, verbose);
 }
 
 void print_layers_summary(const Job& job, const LayersResult& result, const LayerReport& report, double total_seconds) {
   const Printout out(output_is_taken(job));
-  if (job.request.verbose) print_details(out, result.statistics, result.heights.back(), job.curves());
-  fmt::print(out, "{}: {}", job.request.output, summary(report));
-  fmt::print(out, "{:.2f} s\n", total_seconds);
-  print_layers_faces(out, result.statistics.faces, result.layer_statistics.first_faces, job.curves());
-  print_face_causes(out, job, result.statistics);
-  print_layers_corners(out, job, result.statistics.miters);
-  print_disagreeing(out, job, result.statistics);
-  if (result.statistics.obstacles) print_obstacles(out, *result.statistics.obstacles, job.options.clearance);
-  print_doubts(out, job, result.statistics, result.heights.back());
+  const OffsetStatistics& statistics = result.statistics;
+  const LayerFigures& all = report.all;
+  const bool verbose = job.request.verbose;
+  if (verbose) {
+    print_details(out, statistics, result.heights.back(), job.curves());
+    fmt::print(out, "{}{}", summary(report),
+               layers_faces_in_words(statistics.faces, result.layer_statistics.first_faces, job.curves()));
+  }
+  fmt::print(out, "{}: {} layers full on {} % of the {}, {:.4g} of {:.4g} thick on average; {} cells, least scaled "
+                  "Jacobian {:.3g} ({:.2f} s)\n",
+             job.request.output, report.layers, area_percent(all.coverage, 1), report.plane ? "length" : "area",
+             all.reached.mean, all.asked.mean, all.cells, all.scaled_jacobian.least, total_seconds);
+  Remarks remarks;
+  if (report.inverted_block_cells > 0)
+    remarks.add(Gravity::Wrong, fmt::format("{} cells of the block are collapsed or inverted, as where layers end",
+                                            report.inverted_block_cells));
+  if (report.unpaired_sides > 0)
+    remarks.add(Gravity::Input, fmt::format("{} sides on edges of three faces, or of two of opposite orientation, are on "
+                                            "the boundary",
+                                            report.unpaired_sides));
+  if (statistics.obstacles) add_obstacles(*statistics.obstacles, job.options.clearance, remarks);
+  add_faces(job, statistics, remarks);
+  add_layers_corners(job, statistics.miters, remarks);
+  add_input(job, statistics, result.heights.back(), remarks);
+  remarks.print(out, verbose);
 }
 
 }  // namespace vdb_offset::tool

@@ -9,6 +9,7 @@
 
 #include "job.h"
 #include "outputs.h"
+#include "summary/remarks.h"
 #include "vdb_offset/cells.h"
 #include "vdb_offset/iso_surface.h"
 #include "vdb_offset/layers.h"
@@ -28,39 +29,39 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
 /// Planes by their equations, the first few of them.
 std::string planes_in_words(std::span<const SymmetryPlane> planes);
 
-/// Where it is not clear which side is outward, and what to do about it: a line for each doubt.
-void print_orientation(std::FILE* out, const MeshFacts& facts, Orient orient);
+// What is to be said besides the verdict.
 
+/// Where it is not clear which side is outward.
+void add_orientation(const MeshFacts& facts, Orient orient, Remarks& remarks);
 /// What was closed or joined as it is one but for rounding, and which borders look as if they should be.
-void print_seams(std::FILE* out, const SeamFacts& seams, double distance);
-
+void add_seams(const SeamFacts& seams, double distance, Remarks& remarks);
 /// What about the input may make the result wrong.
-void print_doubts(std::FILE* out, const Job& job, const OffsetStatistics& statistics, const Distances& distances);
+void add_input(const Job& job, const OffsetStatistics& statistics, const Distances& distances, Remarks& remarks);
+/// Where the faces' error comes from: all causes that make up a quarter of it or more.
+void add_faces(const Job& job, const OffsetStatistics& statistics, Remarks& remarks);
+/// What is known of faces beyond the share that is certified; `faces`: how many there are in the end.
+void add_certified(const CertifiedFaces& certified, std::size_t faces, Remarks& remarks);
+/// What helps where the faces of an iso-surface are off.
+void add_iso_cause(const FaceError& faces, Remarks& remarks);
 
-/// How far faces are off their distance, as a part of a line.
-void print_faces(std::FILE* out, const FaceError& faces, bool curves);
+/// A share of the area in percent, never more than it is: 100 is all of it.
+std::string area_percent(double share, int digits);
 
-/// What is proven of the faces, and beside it how much could have been: where vertices are all there.
+/// How much of the faces is at the distance, which `asked` names. \pre faces.samples > 0
+std::string faces_in_words(const FaceError& faces, const std::string& asked, bool curves);
+
+/// What is proven of the faces.
 std::string certified_in_words(const CertifiedFaces& certified);
 
-/// The same, and how many faces were made of how many: `faces` in the end. A part of a line.
-void print_certified(std::FILE* out, const CertifiedFaces& certified, std::size_t faces);
-
-/// Whether what is proven of an offset's faces is enough: they were not too many, and with `strict` all of the area is
+/// Whether what is proven of an offset's faces is enough: they were not too many, and the share that is `asked` for is
 /// within the tolerance. Says why not.
-bool is_certified(const CertifiedFaces& certified, bool strict, const std::string& offset);
+bool is_certified(const CertifiedFaces& certified, std::optional<double> asked, const std::string& offset);
 
 /// How many faces a mesh has.
 std::size_t faces_in(const MeshFacts& facts);
 
-/// How far the faces of layers are off their heights: a line.
-void print_layers_faces(std::FILE* out, const FaceError& outermost, const FaceError& first, bool curves);
-
-/// What helps where the faces of an iso-surface are off: a line.
-void print_iso_cause(std::FILE* out, const FaceError& faces);
-
-/// Why faces are off their distance, and what helps: a line with all causes that make up a quarter of it or more.
-void print_face_causes(std::FILE* out, const Job& job, const OffsetStatistics& statistics);
+/// How much of the faces of layers is at their heights: a line.
+std::string layers_faces_in_words(const FaceError& outermost, const FaceError& first, bool curves);
 
 /// Whether 99 % of the faces of an offset, by area, are within a bound, in percent of the distance. Says so if not.
 bool are_within(const FaceError& faces, double percent, const std::string& offset);

@@ -64,7 +64,7 @@ class CurveChecker {
     if (result_.distance == 0) return;
     const Distances distances = distances_of_line();
     std::vector<Miter> miters;
-    if (options_.corners == Corners::Miter)
+    if (options_.corners.value_or(Corners::Miter) == Corners::Miter)
       miters = MiterFinder<CurveQuery>(query_, Corners::Miter, options_.miter_limit, nullptr).all(distances);
     const PlaneCurves curves{query_, drawn_.source, distances, {}, miters};
     CurveFaults faults(curves);

@@ -43,7 +43,7 @@ OffsetResult make_result(const PreparedCurves& curves, const Distances& distance
   result.statistics = curves.statistics();
   MiterFacts& facts = result.statistics.miters;
   std::vector<Miter> miters;
-  if (options.corners == Corners::Miter)
+  if (options.corners.value_or(Corners::Miter) == Corners::Miter)
     miters = MiterFinder<CurveQuery>(curves.query(), Corners::Miter, options.miter_limit, nullptr)(distances, facts);
   const PlaneCurves plane{curves.query(), curves.source(), distances, options.precision, miters};
   if (options.collision == Collision::Limit) {

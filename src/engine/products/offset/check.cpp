@@ -38,6 +38,8 @@ namespace {
 // Vertices between two times that progress is reported: milliseconds. Not measured.
 constexpr std::size_t kVerticesTold = 1024;
 
+Corners corners_of(const CheckOptions& options) { return options.corners.value_or(Corners::Miter); }
+
 void require_usable(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
   if (source.face_count() == 0) throw InvalidInput("check: expected a source with faces, found none");
   if (positions.size() != source.positions.size())
@@ -123,7 +125,7 @@ WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, cons
                          const ExactCorners* exact, const Distances& distances, PolygonView mesh,
                          const CheckOptions& options) {
   const bool slides = options.border == Border::Slide && parts.rest;
-  const bool on_creases = options.corners == Corners::Miter || exact;
+  const bool on_creases = corners_of(options) == Corners::Miter || exact;
   if (!on_creases && !slides) return {};
   const std::size_t count = parts.surface().vertices.size();
   const Distances on_part = distances_of_part(parts, distances);
@@ -132,8 +134,8 @@ WantedMiters find_miters(const MeshParts& parts, const ClosestQuery& query, cons
   WantedMiters miters{{}, {}, std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   if (on_creases) {
     const auto walls =
-        options.corners == Corners::Miter ? walls_at_edge(parts, options.border) : std::vector<MiterWalls>();
-    const MiterFinder finder(query, options.corners, options.miter_limit, obstacles, walls, exact);
+        corners_of(options) == Corners::Miter ? walls_at_edge(parts, options.border) : std::vector<MiterWalls>();
+    const MiterFinder finder(query, corners_of(options), options.miter_limit, obstacles, walls, exact);
     miters.of_vertex = miters_of_all(parts, finder.all(on_part, own_distances));
   }
   if (slides) miters.at_edge = edge_miters_of(parts, BorderSlides(parts, query), query, on_part, own_distances);
@@ -263,7 +265,7 @@ void judge_vertices(const MeshParts& parts, std::span<const Vec3d> source, const
     const Vec3d displacement = finder.positions()[w] - source[w];
     const Miter* const miter = miters.at(w, displacement, tolerance);
     const bool is_at_miter = miter != nullptr,
-               is_beside_miter = !is_at_miter && error > tolerance && options.corners == Corners::Miter &&
+               is_beside_miter = !is_at_miter && error > tolerance && corners_of(options) == Corners::Miter &&
                                  is_on_planes(parts, w, displacement, distances[w], options, tolerance,
                                               find_miter(miters.of_vertex, w));
     result.states[v] = is_at_miter                    ? miter->state
@@ -293,7 +295,7 @@ std::optional<CertifiedFaces> prove_faces(const MeshParts& parts, const ClosestQ
     tolerance[w] = share > 0 ? share * std::abs(asked[w]) : length;
   }
   CertifiedFaces certified =
-      certify({query, surface, faces, source, in_offset, asked, tolerance, states, options.corners}, &progress);
+      certify({query, surface, faces, source, in_offset, asked, tolerance, states, corners_of(options)}, &progress);
   certified.share = share;
   certified.length = length;
   return certified;

@@ -165,7 +165,7 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
     const StageTimer timer(statistics.seconds, Stage::Limit);
     faults.emplace(constrained, mesh.source(), outer, options.precision, mesh.known_crossings());
     faults->move_to_ends(paths);
-    take_faulty_miters_back(*faults, mesh.surface(), options.corners, outer.scale(), marched);
+    take_faulty_miters_back(*faults, mesh.surface(), mesh.corners(), outer.scale(), marched);
     marched_distances = paths.achieved;
     statistics.limit = untangle(*faults, {constrained, mesh.source(), outer, paths, &marched.mitred}, options.progress);
   }

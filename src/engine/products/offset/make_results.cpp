@@ -113,7 +113,7 @@ class ResultMaker {
     std::iota(order.begin(), order.end(), std::size_t{0});
     // Of each result the one that it begins with; its own number if there is none.
     const std::vector<std::size_t> started_from =
-        has_to_be_valid() && options_.corners == Corners::Round
+        has_to_be_valid() && mesh_.corners() == Corners::Round
             ? find_warm_starts(std::span(distances_.moved).first(count))
             : order;  // another result's miters are no start for those of this one
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return started_from[i] == i; });
@@ -152,7 +152,7 @@ class ResultMaker {
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, mesh_.source(), draft.distances, options_.precision, source_crossings_);
     draft.faults->move_to_ends(draft.marched.paths);
-    take_faulty_miters_back(*draft.faults, mesh_.surface(), options_.corners, draft.distances.scale(), draft.marched);
+    take_faulty_miters_back(*draft.faults, mesh_.surface(), mesh_.corners(), draft.distances.scale(), draft.marched);
     if (!has_to_be_valid()) draft.faults.reset();
   }
 
@@ -171,7 +171,7 @@ class ResultMaker {
     draft.statistics.limit = limit(
         *draft.faults,
         {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths, &draft.marched.mitred,
-         options_.corners == Corners::Miter && !draft.marched.mitred.empty() && draft.distances.at_corner().empty()},
+         mesh_.corners() == Corners::Miter && !draft.marched.mitred.empty() && draft.distances.at_corner().empty()},
         progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     if (options_.keep_face_errors) draft.face_faults = draft.faults->of_faces(mesh_.mesh().face_count());

@@ -95,7 +95,10 @@ WeldOptions weld_for(const OffsetOptions& options, const Yield& yield) {
 
 PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, int threads, const Reach& farthest,
                            const Yield& yield)
-    : space_(space), mesh_(space.view()), options_(options) {
+    : space_(space),
+      mesh_(space.view()),
+      options_(options),
+      corners_(options.corners.value_or(yield.layers > 0 ? Corners::Round : Corners::Miter)) {
   const bool moves = goes_anywhere(farthest);
   GridPlan plan;
   {
@@ -143,7 +146,7 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
   for (std::size_t i = 0; i < of_part.size(); ++i)
     hold(distances[i], marched.emplace_back(of_all(on_part[i], std::move(of_part[i]))));
   // Paths along sharp ridges are what is asked for: they end where those do.
-  const bool on_creases = options_.corners == Corners::Miter || ridges == Ridges::Smooth || exact_;
+  const bool on_creases = corners_ == Corners::Miter || ridges == Ridges::Smooth || exact_;
   if (on_creases || has_edge_miters_) miter(on_part, marched, on_creases);
   return marched;
 }
@@ -151,12 +154,12 @@ std::vector<PreparedMesh::Marched> PreparedMesh::march(std::span<const Distances
 /// Gives vertices on creases their miters, or with Corners::Round those whose ends are at the distance; and border
 /// vertices of a part that slide theirs where the moved faces meet those that stay.
 void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> marched, bool on_creases) {
-  const bool may_go_farther = options_.corners == Corners::Miter;
+  const bool may_go_farther = corners_ == Corners::Miter;
   const std::vector<MiterWalls> walls =
       may_go_farther ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
   std::optional<MiterFinder<ClosestQuery>> miters;
   if (on_creases) {
-    miters.emplace(*query_, options_.corners, options_.miter_limit, obstacles(), std::span<const MiterWalls>(walls),
+    miters.emplace(*query_, corners_, options_.miter_limit, obstacles(), std::span<const MiterWalls>(walls),
                    exact());
     on_crease_ = miters->on_crease();
   }

@@ -44,6 +44,8 @@ class PreparedMesh {
   /// The mesh in the space in which distances are measured.
   PolygonView mesh() const { return mesh_; }
   const OffsetOptions& options() const { return options_; }
+  /// What becomes of sharp corners, also where the options leave it open.
+  Corners corners() const { return corners_; }
   const MeshParts& parts() const { return parts_; }
   const Surface& surface() const { return parts_.surface(); }
   bool has_turned_faces() const { return surface().facts.turned_triangles > 0; }
@@ -104,6 +106,7 @@ class PreparedMesh {
   const InMetric& space_;
   PolygonView mesh_;
   const OffsetOptions& options_;
+  Corners corners_;
   OffsetStatistics statistics_;
   MeshParts parts_;
   DistanceField field_;

@@ -203,29 +203,18 @@ class RefinedRun {
     }
   }
 
-  /// Small triangles that cross others in the source: large ones have much beside what crosses.
-  std::vector<std::uint32_t> small_crossing_triangles() const {
-    std::vector<std::uint32_t> small = crossing_;
-    std::erase_if(small, [&](std::uint32_t t) {
-      const auto& [a, b, c] = surface().triangles[t];
-      const Vec3d &p = surface().vertices[a], &q = surface().vertices[b], &r = surface().vertices[c];
-      return std::max({(q - p).length(), (r - q).length(), (p - r).length()}) > options_.distance.scale();
-    });
-    return small;
-  }
-
   /// Splits the faces, in stages, and makes the offset of what comes of that.
   void refine(const Distances& asked, const OffsetResult& coarse) {
     std::optional<StageTimer> timer(std::in_place, seconds_, Stage::Refine);
     std::vector<Vec3d> displacement(surface().vertices.size());
     for (std::uint32_t w = 0; w < displacement.size(); ++w) displacement[w] = displacement_of(w, asked[w], coarse);
     std::vector<RefinedVertex> vertices = vertices_of_surface(asked, coarse);
-    const InterpolatedTargets targets(prepared_.parts(), prepared_.query(), prepared_.obstacles(), options_.corners,
+    const InterpolatedTargets targets(prepared_.parts(), prepared_.query(), prepared_.obstacles(), prepared_.corners(),
                                       options_.miter_limit, std::move(displacement));
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
-                    {options_.corners, most_faces(), mesh_.face_count(), tolerance_.precision, edges_left_out(),
-                     small_crossing_triangles()});
+                    {prepared_.corners(), most_faces(), mesh_.face_count(), tolerance_.precision, edges_left_out(),
+                     crossing_});
     Progress progress(options_.progress, Stage::Refine, kProgress);
     std::size_t told = 0;
     const auto tell = [&](double share) {
@@ -303,7 +292,7 @@ class RefinedRun {
       if (options_.only.empty() || options_.only[f]) faces.push_back({vertex, kNone});
     });
     CertifiedFaces certified = certify({prepared_.query(), surface(), faces, triangles_->positions(), positions, asked,
-                                        tolerance, states, options_.corners});
+                                        tolerance, states, prepared_.corners()});
     certified.share = tolerance_.share;
     certified.length = tolerance_.length;
     certified.source_faces = mesh_.face_count();

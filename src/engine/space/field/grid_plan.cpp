@@ -77,24 +77,25 @@ void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest,
             const PlanContext& context) {
   const double fitting = coarsen_until_it_fits(surface, farthest, plan.voxel_size, max_memory, context);
   const auto mib = [](std::size_t bytes) { return static_cast<double>(bytes) / 1048576.0; };
-  throw OutOfBudget(fmt::format(
-      "plan: expected a grid that fits into {:.0f} MiB (--max-memory) and {:.0f} voxels across, got about {:.0f} MiB "
-      "in {} leaf nodes "
-      "with voxel size {:.6g} ({})",
-      max_memory ? mib(max_memory) : 0x1p42, kMaxVoxelsAcross, mib(plan.bytes), plan.leaf_nodes, plan.voxel_size,
-      fitting > 0 ? fmt::format("voxel size {:.6g} would fit", fitting) : "the mesh itself does not fit"));
+  const std::string why = max_memory > 0 && plan.bytes > max_memory
+                              ? fmt::format("more than the {:.0f} MiB that --max-memory allows", mib(max_memory))
+                              : fmt::format("and is more than {:.0f} voxels across", kMaxVoxelsAcross);
+  throw OutOfBudget(fmt::format("plan: the run needs about {:.0f} MiB with voxels of {:.6g}, {}: {}", mib(plan.bytes),
+                                plan.voxel_size, why,
+                                fitting > 0 ? fmt::format("--voxel-size {:.6g} would fit", fitting)
+                                            : "the mesh itself does not fit"));
 }
 
 VoxelSize choose(double median_edge, double diagonal, double d) {
   const double edge_floor = median_edge / 2, diagonal_floor = diagonal / 1024;
   const double floor = std::max(edge_floor, diagonal_floor), ceiling = std::max(diagonal / 64, d / 16);
   if (d < floor && floor <= ceiling)
-    return {floor, edge_floor >= diagonal_floor ? "half the median edge, as the distance is smaller"
-                                                : "diagonal / 1024, as the distance is smaller"};
+    return {floor, edge_floor >= diagonal_floor ? "automatic: half the median edge, as the distance is smaller"
+                                                : "automatic: diagonal / 1024, as the distance is smaller"};
   if (d > ceiling || floor > ceiling)
-    return {ceiling, diagonal / 64 >= d / 16 ? "diagonal / 64, the coarsest useful size"
-                                             : "distance / 16, the coarsest useful size"};
-  return {d, "the distance: the smoothing length of the directions"};
+    return {ceiling, diagonal / 64 >= d / 16 ? "automatic: diagonal / 64, the coarsest useful size"
+                                             : "automatic: distance / 16, the coarsest useful size"};
+  return {d, "automatic: equals the distance"};
 }
 
 }  // namespace

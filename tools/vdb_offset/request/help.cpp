@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// What --help says around the options, and the topics it lists them by.
+#include "request/help.h"
+
+namespace vdb_offset::tool {
+
+const char* const kAbout =
+    "Offsets a mesh by a distance and keeps its topology: the same vertices in the same order, the same faces,\n"
+    "texture coordinates, groups and materials; only positions (and normals) change.";
+
+const char* const kMore = R"(
+INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
+behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, a CAD
+model (.step .stp .iges .igs .brep), which is tessellated, and whose offset may be one (.step .stp .brep), a level set
+(.vdb), which OUTPUT may be as well with --mode iso, or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
+of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
+face.
+D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
+below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which gives each vertex its
+own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
+functions (sin, sqrt, min ...); a % behind it makes it percent. Several distances give several outputs: NAME_001.obj,
+NAME_002.obj ..., or OUTPUT holds {i} (their number) or {d} (the distance as given).
+
+Examples:
+  vdb_offset bunny.obj bigger.obj --distance 1%         enlarge by 1 % of the diagonal
+  vdb_offset part.stl clearance.stl --distance -0.2     shrink by 0.2 units
+  vdb_offset wing.ply out.ply --distance 0.5% --report out.json --strict
+  vdb_offset big.obj out.obj --distance 2 --dry-run     what would it take?
+  vdb_offset wing.obj skin.obj --distance '0.02*(1 - u)'       thicker towards u = 0
+  vdb_offset car.obj out.obj --distance 5 --only group=roof    one part; the rest stays
+  vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
+  vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
+  vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
+  vdb_offset part.stl out.stl --distance-xy -0.1 --distance-z -0.05      less across than up
+  vdb_offset peg.stl out.stl --fit socket.stl --clearance 0.1           makes room where there is less
+  vdb_offset part.obj out.obj --distance 1% --tolerance 2%     faces at the distance, too, to 2 % of it
+  vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
+  vdb_offset scenes/torus.json torus.obj                a procedural scene
+  vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
+  vdb_offset batch models bigger --distance 1%          a folder of models (vdb_offset batch --help)
+
+Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
+met, or more than --max-faces needed), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
+once they are put in place, all together, a signal changes nothing more.
+Report keys, library and guarantees: see the guides in docs/.)";
+
+const char* const kMoreOfFirst = R"(
+INPUT is a mesh (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu .fbx .dae .3ds), a CAD model (.step .iges .brep), a
+level set (.vdb), curves (.svg .dxf .dat .txt .xy), or a scene (.json). D is in the file's units, or a percentage of the
+bounding box's diagonal; below zero it is inward: --distance=-1%.
+
+Examples:
+  vdb_offset bunny.obj bigger.obj --distance 1%          enlarge by 1 % of the diagonal
+  vdb_offset part.stl bigger.stl -d 0.2 --preset part    enlarge a printed part by 0.2 units, certified
+  vdb_offset vase.stl shell.stl -d -2 --shell            a closed solid, 2 units thick
+  vdb_offset scan.obj clean.obj -d 1% --mode iso         a clean surface of its own
+  vdb_offset check bunny.obj bigger.obj                  measure an offset (vdb_offset check --help)
+  vdb_offset batch models bigger -d 1%                   a folder of models (vdb_offset batch --help))";
+
+std::span<const HelpTopic> help_topics() {
+  static const HelpTopic topics[] = {
+      {"distances",
+       "Distances and corners",
+       {"distance", "unit", "distance-from", "distance-of", "blend", "distance-xy", "distance-z", "fit", "clearance",
+        "corners", "miter-limit", "collision"}},
+      {"accuracy",
+       "Accuracy and when to fail",
+       {"tolerance", "max-faces", "refined-source", "map", "strict", "strict-faces", "strict-certified"}},
+      {"parts", "Parts and surroundings", {"only", "border", "symmetry", "obstacle", "weld", "orient"}},
+      {"solids",
+       "Solids and iso-surfaces",
+       {"shell", "inner", "mode", "adaptivity", "inside", "keep-specks", "transport"}},
+      {"layers",
+       "Layers of cells",
+       {"layers", "first-height", "total-thickness", "growth", "heights", "structured"}},
+      {"inputs",
+       "Curves, CAD models and level sets",
+       {"close", "flatten", "deflection", "angle", "cad-seconds", "fit-tolerance", "faceted", "grid", "isovalue"}},
+      {"outputs",
+       "Files that are written",
+       {"format", "normals", "precision", "report", "states", "paths", "html", "save-vdb", "no-sync", "json"}},
+      {"run",
+       "The run",
+       {"preset", "config", "threads", "max-memory", "voxel-size", "voxels-per-distance", "solver", "dry-run", "quiet",
+        "verbose", "help", "version"}}};
+  return topics;
+}
+
+}  // namespace vdb_offset::tool

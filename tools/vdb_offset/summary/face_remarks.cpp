@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far faces are from the distance, what is proven of them, and where the error comes from.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "messages.h"
+#include "summary/summary.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+// Causes that make up less than this share of the error are not reported: what helps against them would not be seen.
+constexpr double kLeastCause = 0.25;
+// Miters whose planes go too far by no more than this share do not count as a cause. The error up to which area counts
+// as being at the distance.
+constexpr double kAtDistance = 0.01;
+
+// Share of the distance by less than which faces that are farther are not reported. Not measured: nobody would see it.
+constexpr double kLeastFarther = 1e-3;
+
+/// A share as a percentage; next to nothing is rounding.
+std::string percent(double share) { return share < 1e-8 ? "0" : fmt::format("{:.3g}", 100 * share); }
+
+/// Whether faces could be split in place of a mesh that is finer, for which the option is named then.
+bool may_be_split(const Job& job, const OffsetStatistics& statistics) {
+  return !statistics.certified && !job.curves() && !job.request.layers && !job.request.axes && !job.to_fit &&
+         !job.shell && job.files.outputs.size() == 1;
+}
+
+/// Why faces at sharp corners are off, and what helps. Where more than two faces meet at an edge, nothing does.
+std::string corners_in_words(const Job& job, const OffsetStatistics& statistics) {
+  const bool any_branches = statistics.facts.non_manifold_edges > 0;
+  const char* const branches = job.curves() ? "where curves branch" : "at edges of more than two faces";
+  if (job.corners() == Corners::Round)
+    return fmt::format("is at sharp corners. Use --corners miter{}{}",
+                       may_be_split(job, statistics) ? ", or --tolerance 1% to split the faces there" : "",
+                       any_branches ? fmt::format(" (neither helps {})", branches) : "");
+  const MiterFacts& miters = statistics.miters;
+  std::vector<std::string> which;
+  if (miters.unproven + miters.taken_back > 0) which.emplace_back("without room for a miter");
+  if (miters.cut > 0) which.emplace_back("whose miters are cut");
+  if (miters.excess > kAtDistance) which.emplace_back("where more planes meet than one point can be on");
+  if (any_branches) which.emplace_back(branches);
+  return fmt::format(
+      "is at sharp corners {}{}", which.empty() ? "without a miter" : fmt::to_string(fmt::join(which, ", or ")),
+      miters.cut > 0                                                               ? ". Use a larger --miter-limit"
+      : job.request.layers ? ""
+      : may_be_split(job, statistics) ? ". To split the faces there: --tolerance 1%"
+                                      : "");
+}
+
+/// How much is too far away at corners of many planes, and what helps.
+void add_beyond(const Job& job, const OffsetStatistics& statistics, Remarks& remarks) {
+  const FaceError& faces = statistics.faces;
+  if (faces.beyond < kAtDistance) return;
+  remarks.add(Gravity::Off,
+              fmt::format("{:.1f} % of the area is too far away, by up to {:.0f} %, at corners where more planes meet "
+                          "than one vertex can be on{}",
+                          100 * faces.beyond, 100 * faces.most_beyond,
+                          may_be_split(job, statistics) ? ". To split the faces there: --tolerance 1%" : ""));
+}
+
+std::string cause_of_coarse(const Job& job, const OffsetStatistics& statistics) {
+  if (job.curves()) return "is between points that are far apart. Use more points";
+  if (may_be_split(job, statistics)) return "is between the vertices of large faces. To split these: --tolerance 1%";
+  return "is between the vertices of large faces. Use a finer mesh";
+}
+
+}  // namespace
+
+std::string area_percent(double share, int digits) {
+  const double step = std::pow(10.0, digits);
+  return fmt::format("{:.{}f}", std::floor(share * 100 * step) / step, digits);
+}
+
+std::string faces_in_words(const FaceError& faces, const std::string& asked, bool curves) {
+  return fmt::format("{} % of the {} is within 1 % of {} (on average {} % off)", area_percent(faces.at_distance, 1),
+                     curves ? "length" : "area", asked, percent(faces.mean));
+}
+
+std::size_t faces_in(const MeshFacts& facts) {
+  std::size_t faces = 0;
+  for (const auto& [corners, count] : facts.faces_by_corners) faces += count;
+  return faces;
+}
+
+std::string certified_in_words(const CertifiedFaces& certified) {
+  const std::string within =
+      certified.share > 0 ? fmt::format("{:.6g} %", 100 * certified.share) : fmt::format("{:.6g}", certified.length);
+  return fmt::format("{} % of the area is certified within {} of the distance at every point",
+                     area_percent(certified.certified, 2), within);
+}
+
+void add_certified(const CertifiedFaces& certified, std::size_t faces, Remarks& remarks) {
+  if (certified.source_faces > 0)
+    remarks.add(Gravity::Detail, fmt::format("{} faces were split into {}", certified.source_faces, faces));
+  if (certified.certified < certified.there)
+    remarks.add(Gravity::Off,
+                fmt::format("the vertices of {} % of the area reached the distance; what of it is not certified is up to "
+                            "{:.3g} % off",
+                            area_percent(certified.there, 2), 100 * certified.worst_left));
+  // The area is that of the source, and what has little there may have much in the offset.
+  if (certified.worst > certified.worst_left)
+    remarks.add(Gravity::Detail, fmt::format("the worst of all faces is up to {:.3g} % off", 100 * certified.worst));
+}
+
+bool is_certified(const CertifiedFaces& certified, std::optional<double> asked, const std::string& offset) {
+  if (certified.out_of_faces)
+    tell(
+        fmt::format("--max-faces: {}: expected more faces, as those whose vertices are at the distance are up to "
+                    "{:.3g} % off",
+                    offset, 100 * certified.worst_left));
+  else if (asked && certified.certified < *asked)
+    tell(fmt::format("{}: {}: expected {:g} %", offset, certified_in_words(certified), 100 * *asked));
+  else return true;
+  return false;
+}
+
+std::string layers_faces_in_words(const FaceError& outermost, const FaceError& first, bool curves) {
+  return fmt::format("outermost {}: {}; at the first height: {}\n", curves ? "curve" : "surface",
+                     faces_in_words(outermost, "its height", curves), faces_in_words(first, "it", curves));
+}
+
+void add_iso_cause(const FaceError& faces, Remarks& remarks) {
+  if (faces.mean > kAtDistance)
+    remarks.add(Gravity::Off, "the faces' error comes from the size of voxels. Use a smaller --voxel-size");
+}
+
+void add_faces(const Job& job, const OffsetStatistics& statistics, Remarks& remarks) {
+  add_beyond(job, statistics, remarks);
+  const FaceError& faces = statistics.faces;
+  if (faces.farther > kLeastFarther)
+    remarks.add(Gravity::Detail,
+                fmt::format("at sharp edges faces are {:.3g} % farther than the distance on average (miters)",
+                            100 * faces.farther));
+  const bool curves = job.curves();
+  std::vector<std::pair<double, std::string>> causes{
+      {faces.held_back, fmt::format("is at {} that fall short. Use a smaller distance, which has more room",
+                                    curves ? "points" : "vertices")},
+      {faces.stuck, fmt::format("is at {} that have no room at any distance", curves ? "points" : "vertices")},
+      {faces.no_room, "is in walls or gaps narrower than two distances. Use a smaller distance"},
+      {faces.corners, corners_in_words(job, statistics)},
+      {faces.coarse, cause_of_coarse(job, statistics)}};
+  std::erase_if(causes, [](const auto& cause) { return cause.first < kLeastCause; });
+  std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [share, text] : causes)
+    remarks.add(Gravity::Off, fmt::format("{:.0f} % of the {}' error {}", 100 * share, curves ? "segments" : "faces",
+                                          text));
+}
+
+bool are_within(const FaceError& faces, double bound, const std::string& offset) {
+  if (100 * faces.quantile_99 <= bound) return true;
+  tell(fmt::format("--strict-faces: {}: 99 % of it is within {:.3g} % of the distance, expected {:g} %", offset,
+                   100 * faces.quantile_99, bound));
+  return false;
+}
+
+}  // namespace vdb_offset::tool

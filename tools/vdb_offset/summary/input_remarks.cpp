@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// What about the input may make the result other than was meant, and the option that settles it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "messages.h"
+#include "summary/summary.h"
+#include "vdb_offset/polygons.h"
+
+namespace vdb_offset::tool {
+namespace {
+
+std::string text_of(const SymmetryPlane& plane) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    if (plane.normal[k] == 0) continue;
+    if (!text.empty()) text += " + ";
+    if (plane.normal[k] != 1) text += fmt::format("{:.6g} ", plane.normal[k]);
+    text += "xyz"[k];
+  }
+  return fmt::format("{} = {:.6g}", text, plane.offset);
+}
+
+void add_slivers(const MeshFacts& facts, Remarks& remarks) {
+  if (facts.sliver_edges > 0)
+    remarks.add(Gravity::Off,
+                fmt::format("{} edges are no longer than {:.2g}, where the median is {:.2g}; such slivers hold back the "
+                            "vertices around them. To close them: --weld {:g}",
+                            facts.sliver_edges, facts.longest_sliver, facts.median_edge,
+                            MeshFacts::tolerance_above(facts.longest_sliver)));
+}
+
+/// The plane as --symmetry takes it.
+std::string as_option(const SymmetryPlane& plane) {
+  for (int k = 0; k < 3; ++k)
+    if (plane.normal[k] == 1) return fmt::format("{}={:.9g}", "xyz"[k], plane.offset);
+  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", plane.normal[0], plane.normal[1], plane.normal[2], plane.offset);
+}
+
+/// Which planes borders stay in without having been asked to, and where borders of the offset are not as one would
+/// expect from the input.
+void add_borders(const BorderFacts& borders, Remarks& remarks) {
+  if (borders.planes.size() > borders.named_planes)
+    remarks.add(Gravity::Detail,
+                fmt::format("borders stay in the plane they lie in: {} (--symmetry none: do not)",
+                            planes_in_words(std::span(borders.planes).subspan(borders.named_planes))));
+  if (borders.strayed_vertices > 0)
+    remarks.add(Gravity::Input,
+                fmt::format("{} of {} boundary vertices moved out of the plane perpendicular to the boundary (by up to "
+                            "{:.3g} degrees)",
+                            borders.strayed_vertices, borders.across_vertices + borders.held_vertices,
+                            borders.worst_angle));
+  if (borders.beyond > 0)
+    remarks.add(Gravity::Off, fmt::format("{} vertices crossed a plane that borders stay in, and the input lies on one "
+                                          "side of",
+                                          borders.beyond));
+  if (borders.left.empty()) return;
+  std::vector<SymmetryPlane> left;
+  double farthest = 0;
+  for (const BorderFacts::LeftPlane& each : borders.left) {
+    left.push_back(each.plane);
+    farthest = std::max(farthest, each.farthest);
+  }
+  remarks.add(Gravity::Off,
+              fmt::format("borders in {} leave that plane by up to {:.3g}, because their faces rise from it by less "
+                          "than 12 degrees. To keep them there: --symmetry {}",
+                          planes_in_words(left), farthest, as_option(left.front())));
+}
+
+/// A distance as it was given, with the other sign.
+std::string turned_round(const std::string& text) {
+  if (text.starts_with('-') && text.find_first_of("+*/^( ", 1) == std::string::npos) return text.substr(1);
+  const bool number = text.find_first_not_of("0123456789.eE%") == std::string::npos;
+  return number ? "-" + text : fmt::format("'-({})'", text);
+}
+
+/// The option that asks for the same offset to the other side.
+std::string option_for_other_side(const Job& job) {
+  const std::optional<LayersRequest>& layers = job.request.layers;
+  const DistanceRequest* const asked = !layers         ? &job.asked.front()
+                                       : layers->first ? &*layers->first
+                                       : layers->total ? &*layers->total
+                                                       : nullptr;
+  if (!asked) return "heights below 0";
+  if (!asked->from.empty()) return "distances of the other sign";
+  const char* const option = !layers ? "--distance" : layers->first ? "--first-height" : "--total-thickness";
+  return fmt::format("{} {}", option, turned_round(asked->text));
+}
+
+void add_made_straight(const Source& source, Remarks& remarks) {
+  if (const std::size_t flattened = source.curves->flattened_shapes; flattened > 0)
+    remarks.add(Gravity::Detail,
+                fmt::format("{} curved shape{} became straight segments, at most {:.3g} off (--flatten)", flattened,
+                            plural(flattened), source.curves->flattened_to));
+  for (const OpenCurve& closed : source.closed)
+    remarks.add(Gravity::Detail, fmt::format("a gap of {:.6g} between a curve's ends was closed", closed.gap));
+}
+
+/// Whether coordinates are kept to the last bit of a double.
+bool has_all_digits(const Job& job) {
+  return !job.source.file || job.source.file->precision.kind == Precision::Kind::Double;
+}
+
+/// Where the input intersects itself, or the refined source does. What added vertices are rounded to is all that makes
+/// the latter intersect itself where the former does not.
+void add_source_crossings(const Job& job, const OffsetStatistics& statistics, Remarks& remarks) {
+  const LimitStatistics& limit = statistics.limit;
+  if (limit.source_crossings == 0) return;
+  const std::string pairs = fmt::format("{}{} {} pairs", limit.more_source_crossings ? "more than " : "",
+                                        limit.source_crossings, job.curves() ? "segment" : "triangle");
+  const std::string near = limit.more_source_crossings
+                               ? "the result was not searched near them"
+                               : fmt::format("the result adds {} near them", limit.crossings_near_source);
+  const char* const remedy =
+      job.curves() || job.request.layers || job.request.iso ? "" : ". For a clean surface: --mode iso";
+  const bool is_refined = statistics.certified && statistics.certified->source_faces > 0;
+  const std::size_t own = is_refined ? statistics.certified->source_crossings : 0;
+  if (is_refined && own == 0)
+    remarks.add(Gravity::Input,
+                fmt::format("the refined source intersects itself at {} though the input does not, because added "
+                            "vertices are rounded; {}{}",
+                            pairs, near, has_all_digits(job) ? "" : ". Save the input as OBJ, which has more digits"));
+  else
+    remarks.add(Gravity::Input,
+                fmt::format("the input intersects itself at {}{} (not repaired); {}{}", pairs,
+                            is_refined ? fmt::format(" after splitting, {} before", own) : "", near, remedy));
+}
+
+/// Where the file's coordinates are too coarse for distances to be met to a hundredth, as faces are judged.
+void add_rounding(double rounding, double distance, Remarks& remarks) {
+  constexpr double kWorthSaying = 0.01;
+  if (rounding <= kWorthSaying * distance) return;
+  remarks.add(Gravity::Wrong,
+              fmt::format("coordinates this large are rounded by {:.2g}, {:.0f} % of the distance. Move the model to "
+                          "the origin, or write a format with more digits (.obj, .ply)",
+                          rounding, 100 * rounding / distance));
+}
+
+}  // namespace
+
+std::string planes_in_words(std::span<const SymmetryPlane> planes) {
+  constexpr std::size_t kMostNamed = 6;  // planes that are named on a line
+  std::vector<std::string> names;
+  for (const SymmetryPlane& plane : planes.first(std::min(planes.size(), kMostNamed))) names.push_back(text_of(plane));
+  return fmt::format("{}{}", fmt::join(names, ", "),
+                     planes.size() > kMostNamed ? fmt::format(" and {} more", planes.size() - kMostNamed) : "");
+}
+
+void add_orientation(const MeshFacts& facts, Orient orient, Remarks& remarks) {
+  const std::string pieces =
+      facts.closed_components == 1
+          ? "the only closed piece is"
+          : fmt::format("{} of {} closed pieces are", facts.inside_out_components, facts.closed_components);
+  if (facts.inside_out_components > 0 && orient == Orient::Keep)
+    remarks.add(Gravity::Wrong, pieces + " inside out: positive distances shrink it. To enlarge it: --orient "
+                                         "fix-direction-only");
+  else if (facts.inside_out_components > 0)
+    remarks.add(Gravity::Detail, pieces + " inside out: treated as flipped, its faces stay as they are");
+  if (facts.enclosed_components > 0)
+    remarks.add(Gravity::Wrong,
+                fmt::format("{} of {} closed pieces lie inside another and point outward: positive distances enlarge "
+                            "them. If they are cavities: --orient fix-cavities",
+                            facts.enclosed_components, facts.closed_components));
+  if (facts.orientation_conflicts > 0)
+    remarks.add(facts.unsettled_conflicts > 0 ? Gravity::Input : Gravity::Detail,
+                fmt::format("inconsistent orientation at {} edges; {} triangles treated as flipped; {}",
+                            facts.orientation_conflicts, facts.turned_triangles,
+                            facts.unsettled_conflicts > 0 ? fmt::format("{} edges left", facts.unsettled_conflicts)
+                                                          : "none left"));
+}
+
+void add_seams(const SeamFacts& seams, double distance, Remarks& remarks) {
+  if (seams.vertices > 0)
+    remarks.add(Gravity::Detail,
+                fmt::format("{} boundary vertices were welded to others at most {:.2g} away, which is rounding "
+                            "(--weld exact: do not)",
+                            seams.vertices, seams.widest));
+  if (seams.hanging > 0)
+    remarks.add(Gravity::Detail,
+                fmt::format("{} T-junction vertices were attached to the edge they lie on, at most {:.2g} away "
+                            "(--weld exact: do not)",
+                            seams.hanging, seams.widest_hanging));
+  if (seams.slivers > 0)
+    remarks.add(Gravity::Detail,
+                fmt::format("{} vertices at ends of edges no longer than {:.2g} were welded, as single precision could "
+                            "not hold these (--weld exact: do not)",
+                            seams.slivers, seams.widest_sliver));
+  constexpr double kFarBelow =
+      0.1;  // share of the distance: borders nearer to each other hold the offset back; not measured
+  if (seams.near_vertices > 0 && seams.widest_near < kFarBelow * distance)
+    remarks.add(Gravity::Input,
+                fmt::format("{} boundary vertices face another boundary at most {:.2g} away. If that gap is "
+                            "unintended: --weld {:g}",
+                            seams.near_vertices, seams.widest_near, MeshFacts::tolerance_above(seams.widest_near)));
+}
+
+std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
+  std::vector<std::string> hints;
+  std::vector<OpenCurve> open;
+  if (job.curves()) open = open_curves(job.source.view());
+  std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
+  if (!open.empty())
+    hints.push_back(fmt::format("{} open curve{} with ends that nearly meet ({:.6g} apart, length {:.6g}). To join the "
+                                "ends: --close",
+                                open.size(), plural(open.size()), open.front().gap, open.front().length));
+  if (room.suggests_other())
+    hints.push_back(fmt::format("only {:.0f} % of the {} has room on this side, {:.0f} % on the other. If {} the wrong "
+                                "way: {}",
+                                100 * room.here, job.curves() ? "curves" : "surface", 100 * room.there,
+                                job.curves() ? "curves run" : "faces point", option_for_other_side(job)));
+  return hints;
+}
+
+void add_input(const Job& job, const OffsetStatistics& statistics, const Distances& distances, Remarks& remarks) {
+  const double farthest = std::abs(distances.farthest());
+  add_rounding(statistics.rounding, farthest, remarks);
+  for (std::string& hint : side_hints(job, statistics.room)) remarks.add(Gravity::Wrong, std::move(hint));
+  const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
+  if (in(VertexState::Limited) + in(VertexState::Collision) > 0) add_slivers(statistics.facts, remarks);
+  if (job.curves()) add_made_straight(job.source, remarks);
+  else add_orientation(statistics.facts, job.options.orient, remarks);
+  add_borders(statistics.borders, remarks);
+  add_source_crossings(job, statistics, remarks);
+  add_seams(statistics.facts.seams, farthest, remarks);
+  if (statistics.disagreeing_distances > 0)
+    remarks.add(Gravity::Input,
+                fmt::format("{} {} share a position with one that was given a different distance; the mean was used",
+                            statistics.disagreeing_distances, job.curves() ? "points" : "vertices"));
+}
+
+}  // namespace vdb_offset::tool
