@@ -519,6 +519,56 @@ TEST_CASE("command: 1 for wrong usage", "[command]") {
   check_failure(shell, "sphere.obj out.obj --distance 0 --save-vdb f.vdb", 1, "other than 0");
 }
 
+TEST_CASE("command: what is misspelt or missing is named, with what is meant", "[command]") {
+  const ShellCommand shell;
+  const std::string in_out = "sphere.obj out.obj ";
+  for (const auto& [arguments, message] :
+       {std::pair{in_out, "missing --distance (a scene alone brings its own)"},
+        {in_out + "-d 1 --corner miter", "unknown option --corner; did you mean --corners?"},
+        {in_out + "-d 1 --corner=miter", "unknown option --corner; did you mean --corners?"},
+        {in_out + "--distnace 1", "unknown option --distnace; did you mean --distance?"},
+        {in_out + "--dist 1", "unknown option --dist; did you mean --distance?"},
+        {"--xyz", "unknown option --xyz (vdb_offset --help lists the options)"},
+        {in_out + "-d 1 -w", "unknown option -w (vdb_offset --help lists the options)"},
+        {in_out + "-d 1 more", "not expected: more"},
+        {"check sphere.obj sphere.obj --stric", "unknown option --stric; did you mean --strict?"},
+        {"check sphere.obj sphere.obj --layers 1", "unknown option --layers (vdb_offset check --help lists"},
+        {"batch . out -d 1 --model x", "unknown option --model; did you mean --models?"},
+        {"batch . out -d 1 --corner round", "unknown option --corner; did you mean --corners?"},
+        {"bach in out --distance 1", "bach: no such file; did you mean vdb_offset batch?"},
+        {"chek sphere.obj sphere.obj", "chek: no such file; did you mean vdb_offset check?"},
+        {"cheque out.obj -d 1", "cheque: expected an input that ends in"}})
+    check_failure(shell, arguments, 1, message);
+  CHECK(shell("--distance-xyz --help").code == 0);
+  // A file of nearly such a name is one.
+  std::ofstream(shell.file("patch")) << shell.slurp(shell.file("sphere.obj"));
+  CHECK(shell("patch out.obj -d 0.1 --format obj -q").code == 0);
+}
+
+TEST_CASE("command: what options need and exclude holds for the line and a file of options together", "[command]") {
+  const ShellCommand shell;
+  const auto written = [&](const char* text) {
+    std::ofstream(shell.file("o.toml")) << text;
+    return "sphere.obj out.obj --config o.toml ";
+  };
+  check_failure(shell, written("inner = 0.1") + std::string("-d 0.1"), 1, "--inner needs --shell");
+  check_failure(shell, written("collision = 'limit'") + std::string("-d 0.1 --mode iso"), 1,
+                "--collision and --mode iso exclude each other");
+  CHECK(shell(written("inner = 0.1") + std::string("-d 0.1 --shell -q")).code == 0);
+  CHECK(shell(written("mode = 'iso'") + std::string("-d 0.1 --keep-specks --voxel-size 0.1 -q")).code == 0);
+  // A flag that is off is none.
+  CHECK(shell("sphere.obj out.obj -d 0.1 --tolerance 5% --shell=false -q").code == 0);
+  CHECK(shell("sphere.obj out.obj -d 0.1 -q -q").code == 0);
+  for (const auto& [arguments, message] :
+       {std::pair{"--fit sphere.obj", "--fit needs --clearance"},
+        {"-d 1 --clearance 1", "--clearance needs --obstacle or --fit"},
+        {"--distance-z 1", "--distance-z needs --distance-xy"},
+        {"--layers 2 --heights h.txt --growth 2", "--growth and --heights exclude each other"},
+        {"--distance-xy 1 --distance-z 1 --distance-of up:1", "--distance-of and --distance-xy exclude each other"},
+        {"-d 1 --faceted", "--faceted needs an output that ends in .step, .stp or .brep"}})
+    check_failure(shell, std::string("sphere.obj out.obj ") + arguments, 1, message);
+}
+
 TEST_CASE("command: 2 for input that cannot be read", "[command]") {
   const ShellCommand shell;
   check_failure(shell, "none.obj out.obj --distance 1", 2, "none.obj: cannot be opened");

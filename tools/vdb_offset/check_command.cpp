@@ -16,9 +16,9 @@
 #include "messages.h"
 #include "page/run_pages.h"
 #include "request/command_line.h"
+#include "request/help.h"
 #include "request/offset_options.h"
 #include "request/option_rules.h"
-#include "request/help.h"
 #include "request/option_values.h"
 #include "source.h"
 #include "summary/summary.h"
@@ -77,18 +77,17 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
       "'concave', 'convex', 'up', 'down', 'face=N', 'name=NAME', 'color=RRGGBB', or 'not:PART'; may be "
       "repeated",
       [&made](const std::string& text) { made.only.push_back(parse_part("--only", text)); });
-  line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]",
-              [&made](const std::string& text) { made.border = parse_border(text); });
+  line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]", made.border,
+              parse_border);
   line.repeated("--symmetry", "PLANE",
                 "A plane that what lay on it was to stay in, as it was for the offset: 'x=0' (or y, z), 'A,B,C,D', or "
                 "'none'; may be repeated",
                 [&made](const std::string& text) { take_plane(text, made); });
   line.repeated("--obstacle", "FILE", "Another mesh that nothing may touch; repeatable",
                 [&made](const std::string& text) { made.obstacles.push_back(text); });
-  line.option("--clearance", "C", "How near to obstacles is too near [0]",
-              [&made](const std::string& text) { made.clearance = parse_clearance(text); });
-  line.option("--corners", "KIND", "What became of sharp corners: 'round' or 'miter' [miter]",
-              [&made](const std::string& text) { made.corners = parse_corners(text); });
+  line.option("--clearance", "C", "How near to obstacles is too near [0]", made.clearance, parse_clearance);
+  line.option("--corners", "KIND", "What became of sharp corners: 'round' or 'miter' [miter]", made.corners,
+              parse_corners);
   line.option(
       "--tolerance", "T",
       "Prove that every point of the faces is within T of the distance: world units, or percent of the distance",
@@ -96,28 +95,22 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
         made.tolerance = ToleranceRequest{parse_tolerance(text), text, {}, {}};
       });
   line.option("--miter-limit", "L", "With --corners miter: how many distances vertices went at most [4]",
-              [&made](const std::string& text) { made.miter_limit = parse_miter_limit(text); });
-  line.option(
-      "--precision", "N", "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]",
-      [&made](const std::string& text) { made.write.digits = parse_count("--precision", text, 1, kMostDigits); });
+              made.miter_limit, parse_miter_limit);
+  line.option("--precision", "N",
+              "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]",
+              made.write.digits, count_of("--precision", 1, kMostDigits));
   line.option("--weld", "MODE",
               "Vertices of SOURCE that count as one: 'auto', 'exact', 'none', or within TOL world units, as it was for "
               "the offset [auto]",
-              [&made](const std::string& text) {
-                made.weld_text = text;
-                made.weld = parse_weld(text);
-              });
+              made.weld, parse_weld, made.weld_text);
   line.option(
       "--orient", "MODE",
       "Which side of SOURCE is outward, as it was for the offset: 'keep', 'fix-direction-only' or 'fix-cavities' "
       "[keep]",
-      [&made](const std::string& text) {
-        made.orient_text = text;
-        made.orient = parse_orient(text);
-      });
+      made.orient, parse_orient, made.orient_text);
   line.option("--flatten", "TOL",
               "How far straight segments were from the curved ones of a drawing, as it was for the offset [0.001%]",
-              [&made](const std::string& text) { made.flatten = parse_flatten(text); });
+              made.flatten, parse_flatten);
   declare_part_distances(line, made);
   declare_level_set(line, made);
   declare_cad(line, made);
@@ -130,7 +123,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   Request& made = request.made;
   made.border = Border::Slide;
   std::string distance_xy, distance_z;
-  CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "check --help all");
+  CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "vdb_offset check --help all");
   line.file(
       "SOURCE",
       "Mesh before (.obj .ply .stl .off .3mf .glb .gltf .vtp .vtk .vtu), CAD model (.step .iges .brep) or curves (.dat "
@@ -138,8 +131,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
       made.input);
   line.file("OFFSET", "Mesh or curves after", made.output);
   declare_offset(line, request, distance_xy, distance_z);
-  line.option("--threads", "N", "Threads; 0 takes all [0]",
-              [&made](const std::string& text) { made.threads = parse_count("--threads", text, 0, kMostThreads); });
+  line.option("--threads", "N", "Threads; 0 takes all [0]", made.threads, count_of("--threads", 0, kMostThreads));
   line.option("--report", "FILE", "Write what is found as JSON", made.report);
   line.option("--states", "FILE",
               "Write state, target and achieved distance of every vertex, as found: .csv, or .vtp or .ply to colour by "
@@ -153,21 +145,24 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
             "--tolerance",
             made.strict);
   line.option("--strict-faces", "P", "Exit with 3 unless 99 % of the faces' area is within P percent of the distance",
-              [&made](const std::string& text) { made.strict_faces = parse_strict_faces(text); });
+              made.strict_faces, parse_strict_faces);
   line.option("--strict-certified", "P", "With --tolerance: exit with 3 unless P percent of the area is certified",
-              [&made](const std::string& text) { made.strict_certified = parse_strict_certified(text); });
+              made.strict_certified, parse_strict_certified);
   line.arrange_help(help_topics(),
-                    {"distance", "corners", "tolerance", "strict", "strict-faces", "report", "states", "html"}, kCheckMore);
+                    {"distance", "corners", "tolerance", "strict", "strict-faces", "report", "states", "html"},
+                    kCheckMore);
   if (!line.parse(argc, argv)) return std::nullopt;
+  made.given = line.given();
   require_miters(made);
   require_states_file(made);
   require_page(made);
-  require(!line.has("--clearance") || line.has("--obstacle"), "--clearance needs --obstacle");
-  require(!line.has("--distance") || !line.has("--distance-from"), "--distance-from and --distance exclude each other");
+  using enum OptionRule::Relation;
+  require_rules(made.given, {{{"--clearance"}, NeedsAnyOf, {"--obstacle"}},
+                             {{"--distance-from"}, Excludes, {"--distance"}},
+                             {{"--distance-xy"}, NeedsAnyOf, {"--distance-z"}},
+                             {{"--distance-z"}, NeedsAnyOf, {"--distance-xy"}},
+                             {{"--distance", "--obstacle", "--tolerance"}, Excludes, {"--distance-xy"}}});
   request.axes = parse_axes(distance_xy, distance_z);
-  require(!request.axes || !line.has("--distance"), "--distance and --distance-xy exclude each other");
-  require(!request.axes || !line.has("--obstacle"), "--obstacle and --distance-xy exclude each other");
-  require(!request.axes || !line.has("--tolerance"), "--tolerance and --distance-xy exclude each other");
   return request;
 }
 
@@ -286,14 +281,6 @@ CheckResult measure_curves(const CheckRequest& request) {
   // Shapes that did not move are curved in the offset as well, and get the same points.
   if (source.curves->flattened_shapes > 0) how = {0, source.curves->flattened_to};
   const io::CurveFile offset = io::read_curves(made.output, how);
-  for (const auto& [name, given] : {std::pair{"--weld", made.weld_text != "auto"},
-                                    {"--orient", made.orient_text != "keep"},
-                                    {"--only", !made.only.empty()},
-                                    {"--distance-of", !made.distances_of.empty()},
-                                    {"--obstacle", !made.obstacles.empty()},
-                                    {"--symmetry", !made.symmetry_texts.empty()},
-                                    {"--tolerance", made.tolerance.has_value()}})
-    if (given) throw UsageError(fmt::format("{}: expected meshes, as this is not for curves", name));
   const CurvesView curves = source.view();
   require_same_points(made, curves, offset.file.polygons.view());
   const Job job = resolve_options(made, source);
@@ -310,8 +297,6 @@ CheckResult measure_curves(const CheckRequest& request) {
 
 CheckResult measure_meshes(const CheckRequest& request) {
   const Request& made = request.made;
-  if (made.close) throw UsageError("--close: expected curves, as this is not for meshes");
-  if (made.flatten) throw UsageError("--flatten: expected curves, as this is not for meshes");
   const Source source = read_source(made, false);
   if (!source.file) throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);
@@ -367,6 +352,7 @@ int run_check(int argc, const char* const* argv) {
   tell_of_lost_input(made.input);
   const bool curves = holds_curves(made.input);
   if (curves && request->axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
+  require_options_for(made, curves, "meshes");
   take_distances(*request);
   require_outputs_apart(*request);
   for (const std::string& path : {made.report, made.states, made.html})

@@ -9,6 +9,7 @@
 #include "batch/batch_request.h"
 #include "batch/remote/hosts.h"
 #include "request/offset_options.h"
+#include "request/option_rules.h"
 #include "request/option_values.h"
 
 namespace vdb_offset::tool {
@@ -55,8 +56,8 @@ void declare_batch(CommandLine& line, BatchRequest& request, bool& reports) {
                 "Models are the files with such names, as '*.stl' or 'left/*' (a path under DIR); may be repeated [by "
                 "their endings]",
                 [&request](const std::string& text) { request.selection.push_back(text); });
-  line.option("--jobs", "N", "Models at once; with --sshlogin, on each machine [one for each processor]",
-              [&request](const std::string& text) { request.jobs = parse_count("--jobs", text, 1, kMostJobs); });
+  line.option("--jobs", "N", "Models at once; with --sshlogin, on each machine [one for each processor]", request.jobs,
+              count_of("--jobs", 1, kMostJobs));
   line.flag("--reports", "Keep the report of each model beside its output, as OUTPUT.json", reports);
   line.flag("--retry-failed", "Do models again that failed, too", request.retry_failed);
   line.option(
@@ -83,7 +84,7 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
   BatchRequest request;
   Draft draft;
   bool reports = false;
-  CommandLine line("vdb_offset batch", kBatchAbout, kBatchMore, "batch --help");
+  CommandLine line("vdb_offset batch", kBatchAbout, kBatchMore, "vdb_offset batch --help");
   line.file("DIR", "Folder with models, in subfolders as well", request.folder);
   line.file("OUT", "Folder to write to; it is made if it is not there", request.out);
   declare_batch(line, request, reports);
@@ -96,12 +97,9 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
       request.each.push_back(std::move(option));
   // A damaged model is not to hold up the others.
   if (!line.has("--cad-seconds")) request.each.push_back({"--cad-seconds", "60"});
-  if (reports) {
-    require(!line.has("--report"), "--reports: expected to be given without --report, which names the same files");
-    request.each.push_back({"--report", "{model}{ending}.json"});
-  }
-  require(request.sshlogin.empty() || request.partition.empty(),
-          "--slurm: expected to be given without --sshlogin, got both");
+  require_rules(line.given(), {{{"--reports"}, OptionRule::Excludes, {"--report"}},
+                               {{"--slurm"}, OptionRule::Excludes, {"--sshlogin"}}});
+  if (reports) request.each.push_back({"--report", "{model}{ending}.json"});
   if (line.has("--max-memory")) request.max_memory = draft.request.max_memory;
   request.config = line.config();
   request.threads_given = line.has("--threads");

@@ -34,10 +34,7 @@ GivenDistance least_beside(GivenDistance other) {
 }  // namespace
 
 std::optional<AxisDistances> parse_axes(const std::string& xy, const std::string& z) {
-  if (xy.empty() && z.empty()) return std::nullopt;
-  if (xy.empty() || z.empty())
-    throw UsageError(
-        fmt::format("--distance-{} needs --distance-{}", xy.empty() ? "z" : "xy", xy.empty() ? "xy" : "z"));
+  if (xy.empty()) return std::nullopt;
   AxisDistances axes{parse_one("--distance-xy", xy), parse_one("--distance-z", z)};
   if (axes.xy.value == 0 && axes.z.value == 0)
     throw UsageError(fmt::format("--distance-z: expected one that is not 0, as --distance-xy is, got '{}'", z));

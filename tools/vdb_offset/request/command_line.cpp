@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -48,6 +49,18 @@ std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
 }
 
 }  // namespace
+
+std::size_t edits_between(std::string_view one, std::string_view other) {
+  std::vector<std::size_t> row(other.size() + 1), before;  // for the letters of `one` so far
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (const char letter : one) {
+    before = row;
+    ++row[0];
+    for (std::size_t i = 0; i < other.size(); ++i)
+      row[i + 1] = std::min({before[i] + (letter != other[i]), before[i + 1] + 1, row[i] + 1});
+  }
+  return row.back();
+}
 
 CommandLine::CommandLine(const char* name, const char* about, const char* more, const char* help)
     : app_(std::make_unique<CLI::App>(about, name)), help_(help), more_of_all_(more), more_of_first_(more) {
@@ -137,9 +150,10 @@ void CommandLine::add_config(std::vector<std::string> alternatives, std::vector<
     preset_ = name;
     if (name == kAllPresets) throw CLI::Success();
   };
-  app_->add_option_function<std::string>("--preset", take,
-                   "Options for a purpose: 'part', 'scan', 'fit', 'hollow', 'kerf' or 'layers'; 'help' shows what each "
-                   "of them is. What is given here, or in a file of --config, counts instead")
+  app_->add_option_function<std::string>(
+          "--preset", take,
+          "Options for a purpose: 'part', 'scan', 'fit', 'hollow', 'kerf' or 'layers'; 'help' shows what each "
+          "of them is. What is given here, or in a file of --config, counts instead")
       ->type_name("NAME");
 }
 
@@ -154,7 +168,27 @@ bool CommandLine::understand(std::vector<std::string> reversed) {
     fmt::print(Printout(), "{}", preset_ == kAllPresets ? presets_in_words() : text.str());
     return false;
   } catch (const CLI::ParseError& error) {
+    require_known_options();
     throw UsageError(fmt::format("{} ({} lists the options)", error.what(), help_));
+  }
+}
+
+/// \throw UsageError for a word that looks like an option and is none, with the one that is meant
+void CommandLine::require_known_options() const {
+  for (const std::string& word : app_->remaining()) {
+    if (!word.starts_with('-') || word == "-") continue;
+    const std::string name = word.substr(0, word.find('='));
+    std::string meant;
+    std::pair nearest(true, kMostEdits + 1);  // whether it begins otherwise, and by how many letters it differs
+    for (const CLI::Option* const option : app_->get_options())
+      for (const std::string& known : option->get_lnames()) {
+        const std::pair far(!("--" + known).starts_with(name), edits_between(name, "--" + known));
+        if (far >= nearest) continue;
+        nearest = far;
+        meant = known;
+      }
+    throw UsageError(meant.empty() ? fmt::format("unknown option {} ({} lists the options)", name, help_)
+                                   : fmt::format("unknown option {}; did you mean --{}?", name, meant));
   }
 }
 
@@ -258,6 +292,19 @@ bool CommandLine::parse(int argc, const char* const* argv) {
 }
 
 bool CommandLine::has(const char* option) const { return app_->get_option(option)->count() > 0; }
+
+GivenNames CommandLine::given() const {
+  GivenNames names;
+  for (const CLI::Option* const option : app_->get_options()) {
+    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    const bool is_flag = option->get_expected_max() == 0;
+    if (is_flag && !option->as<bool>()) continue;
+    const std::string name = "--" + option->get_lnames().front();
+    names.insert(name);
+    for (const std::string& value : option->results()) names.insert(name + " " + value);
+  }
+  return names;
+}
 
 std::vector<GivenOption> CommandLine::given_hidden() const {
   std::vector<GivenOption> given;

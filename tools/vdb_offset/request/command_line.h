@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "request/request.h"
 
 namespace CLI {
 class App;
@@ -29,6 +33,11 @@ struct HelpTopic {
   const char *name, *title;
   std::vector<std::string> options;  ///< By their long names; those that a command does not have are left out.
 };
+
+// Most letters by which a word differs from what may be meant by it.
+inline constexpr std::size_t kMostEdits = 2;
+/// How many letters have to be put in, left out or replaced to make one word of the other.
+std::size_t edits_between(std::string_view one, std::string_view other);
 
 /// The files and options of a command, as CLI11 finds them. Values are taken once the whole line has been understood,
 /// so that --help is answered whatever else is in it: each by the function that was declared with its option, in the
@@ -54,8 +63,8 @@ class CommandLine {
   /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name;
   /// where it is not given, the file `input`, which other options name, may state its own.
   void add_unit(std::string& unit, const std::string& input);
-  /// --help lists those of `options` alone and says `more`, and which topics there are; `--help TOPIC` lists the options
-  /// of a topic, and `--help all` those of all, by their topics. `options` lives as long as this.
+  /// --help lists those of `options` alone and says `more`, and which topics there are; `--help TOPIC` lists the
+  /// options of a topic, and `--help all` those of all, by their topics. `options` lives as long as this.
   void arrange_help(std::span<const HelpTopic> topics, std::vector<std::string> options, std::string more);
   /// What is declared from here on is not listed in --help.
   void hide_what_follows() { hidden_ = true; }
@@ -64,6 +73,18 @@ class CommandLine {
   /// An option with a value, given at most once. `type` stands for the value in --help.
   void option(const char* names, const char* type, const char* about, Take take);
   void option(const char* names, const char* type, const char* about, std::string& text);
+  /// An option whose value `made_of` makes of the text.
+  template <class Value, class Parse>
+  void option(const char* names, const char* type, const char* about, Value& value, Parse made_of) {
+    option(names, type, about,
+           [&value, made_of](const std::string& text) { value = static_cast<Value>(made_of(text)); });
+  }
+  /// The same, and `text` gets the text.
+  template <class Value, class Parse>
+  void option(const char* names, const char* type, const char* about, Value& value, Parse made_of, std::string& text) {
+    option(names, type, about,
+           [&value, &text, made_of](const std::string& given) { value = static_cast<Value>(made_of(text = given)); });
+  }
   /// An option with a value that may be given several times.
   void repeated(const char* names, const char* type, const char* about, Take take);
   void flag(const char* names, const char* about, bool& is_set);
@@ -74,6 +95,7 @@ class CommandLine {
 
   /// Whether an option was given, by its long name.
   bool has(const char* option) const;
+  GivenNames given() const;
   /// The file of --config; empty if none was given.
   const std::string& config() const { return config_; }
   /// The hidden options that were given, those with several values once for each.
@@ -94,6 +116,7 @@ class CommandLine {
   /// What a file of options says of those that were not given, as words. \throw UsageError
   std::vector<std::string> words_of(const std::vector<ConfigEntry>& entries) const;
   void require_values() const;
+  void require_known_options() const;
   /// The text of an option as it is to be taken.
   std::string text_of(const CLI::Option& option, const std::string& given) const;
   /// Declares whether --help lists an option.

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The options of an offset: their texts in --help, and what each of them sets.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <string>
+#include <system_error>
 
 #include "page/run_pages.h"
 #include "request/command_line.h"
@@ -37,39 +41,34 @@ void declare_distances(CommandLine& line, Draft& draft) {
   line.option("--mode", "MODE",
               "'topology' moves the mesh's own vertices; 'iso' captures the surface at the distance as a new mesh, "
               "closed and manifold, for which INPUT may be anything [topology]",
-              [&draft](const std::string& text) {
-                draft.is_iso = parse_word("--mode", text, {"topology", "iso"}) == 1;
+              [](const std::string& text) {
+                parse_word("--mode", text, {"topology", "iso"});
               });
-  line.option("--corners", "KIND",
-              "At sharp corners 'miter' puts faces at the distance, and vertices on sharp edges are farther; 'round' puts "
-              "vertices at the distance, and faces around sharp edges are nearer [miter; with --layers round]",
-              [&request](const std::string& text) { request.corners = parse_corners(text); });
-  line.option("--miter-limit", "L",
-              "A vertex on a sharp edge goes no farther than this many distances, at least 1 [4]",
-              [&request](const std::string& text) { request.miter_limit = parse_miter_limit(text); });
+  line.option(
+      "--corners", "KIND",
+      "At sharp corners 'miter' puts faces at the distance, and vertices on sharp edges are farther; 'round' puts "
+      "vertices at the distance, and faces around sharp edges are nearer [miter; with --layers round]",
+      request.corners, parse_corners);
+  line.option("--miter-limit", "L", "A vertex on a sharp edge goes no farther than this many distances, at least 1 [4]",
+              request.miter_limit, parse_miter_limit);
   line.option(
       "--adaptivity", "X",
       "With --mode iso: how readily cells are merged where the surface is nearly flat, 0 (none) to 1 [triangles are "
       "merged where that changes nothing: where it is flat and nothing comes along]",
-      [&draft](const std::string& text) {
-        draft.iso.adaptivity = parse_number("--adaptivity", text, "a number from 0 to 1", kBelowZero, 1);
-      });
+      draft.iso.adaptivity, number_of("--adaptivity", "a number from 0 to 1", kBelowZero, 1));
   line.option("--inside", "MODE",
               "With --mode iso: 'winding' decides what is inside of a mesh that is closed but for small holes, or has "
               "edges of four faces and more; 'never' takes such a mesh as open, with a surface on all its sides "
               "[winding]",
-              [&draft](const std::string& text) {
-                draft.iso.use_winding = parse_word("--inside", text, {"winding", "never"}) == 0;
+              draft.iso.use_winding, [](const std::string& text) {
+                return parse_word("--inside", text, {"winding", "never"}) == 0;
               });
   line.flag("--keep-specks", "With --mode iso: keep pieces that enclose less than a voxel, as knife edges leave them",
             draft.iso.keep_specks);
   line.option("--transport", "LIST",
               "With --mode iso: what comes along from INPUT, of 'uv', 'color' and 'material', separated by commas, or "
               "'none' [all that INPUT has and OUTPUT can hold]",
-              [&draft](const std::string& text) {
-                draft.iso.transport_text = text;
-                draft.iso.transport = parse_transport(text);
-              });
+              draft.iso.transport, parse_transport, draft.iso.transport_text);
   line.option("--distance-from", "FILE",
               "Each vertex's distance, world units: a file of numbers (text or .npy), 'ply:NAME', a vertex "
               "property of INPUT, or 'vtk:NAME', an array of its points; elsewhere '@FILE', 'ply:NAME' and 'vtk:NAME' "
@@ -92,16 +91,10 @@ void declare_tolerance(CommandLine& line, Draft& draft) {
               "Split faces until every point of them is proven to be within T of the distance, wherever vertices get "
               "there: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
               "are in its place",
-              [&request](const std::string& text) {
-                request.text = text;
-                request.tolerance = parse_tolerance(text);
-              });
+              request.tolerance, parse_tolerance, request.text);
   line.option("--max-faces", "N",
               "With --tolerance: make no more faces than this [20 times as many as INPUT has, at least a million]",
-              [&request](const std::string& text) {
-                request.tolerance.most_faces =
-                    static_cast<std::size_t>(parse_count("--max-faces", text, 1, std::numeric_limits<int>::max()));
-              });
+              request.tolerance.most_faces, count_of("--max-faces", 1, std::numeric_limits<int>::max()));
   line.option("--refined-source", "FILE", "With --tolerance: write INPUT with the faces that OUTPUT has",
               request.refined_source);
   line.option("--map", "FILE", "With --tolerance: write where in INPUT each vertex lies that was added, as text",
@@ -122,7 +115,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
                 });
   line.option("--border", "MODE",
               "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]",
-              [&request](const std::string& text) { request.border = parse_border(text); });
+              request.border, parse_border);
   line.repeated(
       "--symmetry", "PLANE",
       "A plane that what lies on it stays in: 'x=0', 'y=1.5', 'z=-2', or 'A,B,C,D' for A x + B y + C z = D; may "
@@ -133,10 +126,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
                 [&request](const std::string& text) { request.obstacles.push_back(text); });
   line.option("--clearance", "C",
               "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]",
-              [&request](const std::string& text) {
-                request.clearance_text = text;
-                request.clearance = parse_clearance(text);
-              });
+              request.clearance, parse_clearance, request.clearance_text);
   line.option("--fit", "FILE",
               "Instead of --distance, with --clearance: what is nearer to this mesh gives way, inward, until it is "
               "that far from it; all else stays",
@@ -156,31 +146,26 @@ void declare_products(CommandLine& line, Draft& draft) {
   line.option("--layers", "N",
               "Grow N layers of cells: with --first-height or --total-thickness, and --growth; OUTPUT is .vtu, .msh, "
               ".cgns, .su2, a folder called polyMesh, or a mesh for each layer",
-              [&draft](const std::string& text) {
-                draft.layers.count = static_cast<std::size_t>(parse_count("--layers", text, 1, kMostLayers));
-              });
+              draft.layers.count, count_of("--layers", 1, kMostLayers));
   line.option("--first-height", "A", "Height of the first layer, as --distance", [&](const std::string& text) {
     draft.layers.first = parse_distance_of("--first-height", text, request);
   });
   line.option("--total-thickness", "T", "Height of all layers together, as --distance", [&](const std::string& text) {
     draft.layers.total = parse_distance_of("--total-thickness", text, request);
   });
-  line.option("--growth", "R", "Each layer's height by that of the one below [1.2]", [&draft](const std::string& text) {
-    draft.layers.growth = parse_number("--growth", text, "a number above 0, up to 10", 0, 10);
-  });
+  line.option("--growth", "R", "Each layer's height by that of the one below [1.2]", draft.layers.growth,
+              number_of("--growth", "a number above 0, up to 10", 0, 10));
   line.option("--heights", "FILE", "A file of heights above the wall, one a line, each as --distance",
               draft.layers.heights);
   line.flag("--structured",
             "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
             draft.layers.structured);
-  line.flag("--close",
-            "Curves: join ends that nearly meet, as at a blunt trailing edge",
-            request.close);
+  line.flag("--close", "Curves: join ends that nearly meet, as at a blunt trailing edge", request.close);
   line.option(
       "--flatten", "TOL",
       "SVG and DXF: replace curved segments by straight ones at most this far off: world units, or percent of the "
       "drawing's diagonal [0.001%]",
-      [&request](const std::string& text) { request.flatten = parse_flatten(text); });
+      request.flatten, parse_flatten);
 }
 
 }  // namespace
@@ -192,20 +177,18 @@ void take_plane(const std::string& text, Request& request) {
 }
 
 void declare_part_distances(CommandLine& line, Request& request) {
-  line.repeated("--distance-of", "PART:D",
-                "A different distance for one part: PART as for --only, as in face=3:0.4; may be repeated, the last that "
-                "names a face counts",
-                [&request](const std::string& text) {
-                  request.distance_of_texts.push_back(text);
-                  request.distances_of.push_back(parse_distance_of_part(text, request));
-                });
+  line.repeated(
+      "--distance-of", "PART:D",
+      "A different distance for one part: PART as for --only, as in face=3:0.4; may be repeated, the last that "
+      "names a face counts",
+      [&request](const std::string& text) {
+        request.distance_of_texts.push_back(text);
+        request.distances_of.push_back(parse_distance_of_part(text, request));
+      });
   line.option("--blend", "L",
               "With --distance-of, or a CAD model and distances in u and v: distances of parts change into each other "
               "over this length on both sides of their edges: world units, or percent of the diagonal [off]",
-              [&request](const std::string& text) {
-                request.blend_text = text;
-                request.blend = parse_blend(text);
-              });
+              request.blend, parse_blend, request.blend_text);
 }
 
 void complete_part_distances(Request& request) {
@@ -216,9 +199,7 @@ void declare_level_set(CommandLine& line, Request& request) {
   line.option("--grid", "NAME", ".vdb files: the grid whose surface is the mesh [the only level set]",
               request.level_set.grid);
   line.option("--isovalue", "V", ".vdb files: the value on that surface; needed if the grid is not a level set [0]",
-              [&request](const std::string& text) {
-                request.level_set.isovalue = parse_number("--isovalue", text, "a number", -kAny, kAny);
-              });
+              request.level_set.isovalue, number_of("--isovalue", "a number", -kAny, kAny));
 }
 
 void declare_cad(CommandLine& line, Request& request) {
@@ -226,16 +207,13 @@ void declare_cad(CommandLine& line, Request& request) {
       "--deflection", "TOL",
       "CAD models: triangles are at most this far from the model's face: world units, or percent of the diagonal [a "
       "hundredth of the distance]",
-      [&request](const std::string& text) { request.deflection = parse_deflection(text); });
+      request.deflection, parse_deflection);
   line.option("--angle", "A",
               "CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",
-              [&request](const std::string& text) {
-                request.angle = parse_number("--angle", text, "a number above 0, up to 90", 0, 90);
-              });
-  line.option("--cad-seconds", "S", "CAD models: how long OpenCASCADE may take for one model in all [300; in a batch 60]",
-              [&request](const std::string& text) {
-                request.cad_seconds = parse_number("--cad-seconds", text, "a number above 0", 0, kAny);
-              });
+              request.angle, number_of("--angle", "a number above 0, up to 90", 0, 90));
+  line.option("--cad-seconds", "S",
+              "CAD models: how long OpenCASCADE may take for one model in all [300; in a batch 60]",
+              request.cad_seconds, number_of("--cad-seconds", "a number above 0", 0, kAny));
 }
 
 namespace {
@@ -246,9 +224,7 @@ void declare_cad_output(CommandLine& line, Request& request) {
       "--fit-tolerance", "TOL",
       "With an OUTPUT that is a CAD model (.step .stp .brep): how far fitted faces may be from the offset, world "
       "units [a ten-thousandth of the distance]",
-      [&request](const std::string& text) {
-        request.fit_tolerance = parse_number("--fit-tolerance", text, "a number above 0", 0, kAny);
-      });
+      request.fit_tolerance, number_of("--fit-tolerance", "a number above 0", 0, kAny));
   line.flag("--faceted", "With an OUTPUT that is a CAD model: write a solid of triangles where no other can be made",
             request.faceted);
 }
@@ -257,13 +233,9 @@ void declare_cad_output(CommandLine& line, Request& request) {
 void declare_method(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.option("--voxel-size", "H", "Voxel size of the direction field, world units [automatic: about D]",
-              [&request](const std::string& text) {
-                request.grid.voxel_size = parse_number("--voxel-size", text, "a number above 0", 0, kAny);
-              });
-  line.option(
-      "--voxels-per-distance", "N", "Voxel size of the direction field as D / N", [&request](const std::string& text) {
-        request.grid.voxels_per_distance = parse_number("--voxels-per-distance", text, "a number above 0", 0, kAny);
-      });
+              request.grid.voxel_size, number_of("--voxel-size", "a number above 0", 0, kAny));
+  line.option("--voxels-per-distance", "N", "Voxel size of the direction field as D / N",
+              request.grid.voxels_per_distance, number_of("--voxels-per-distance", "a number above 0", 0, kAny));
   line.option(
       "--collision", "MODE",
       "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
@@ -275,27 +247,20 @@ void declare_method(CommandLine& line, Draft& draft) {
         request.collision.reset();
         if (!request.cuts) request.collision = word == 1 ? Collision::Merge : Collision::Limit;
       });
-  line.option(
-      "--solver", "NAME", "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]",
-      [&request](const std::string& text) {
-        request.solver = parse_word("--solver", text, {"closest", "eikonal"}) == 1 ? Solver::Eikonal : Solver::Closest;
-      });
+  line.option("--solver", "NAME", "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]",
+              request.solver, [](const std::string& text) {
+                return parse_word("--solver", text, {"closest", "eikonal"}) == 1 ? Solver::Eikonal : Solver::Closest;
+              });
   line.option(
       "--weld", "MODE",
       "Vertices that move as one: 'auto' (equal positions, and borders that are one but for the file's rounding), "
       "'exact' (equal positions), 'none', or within TOL world units [auto]",
-      [&request](const std::string& text) {
-        request.weld_text = text;
-        request.weld = parse_weld(text);
-      });
+      request.weld, parse_weld, request.weld_text);
   line.option("--orient", "MODE",
               "Outward is where the faces point ('keep'), or out of what a closed component encloses even where it "
               "is inside out ('fix-direction-only'; the faces stay as they are), also where it is a cavity whose faces "
               "point outward ('fix-cavities') [keep]",
-              [&request](const std::string& text) {
-                request.orient_text = text;
-                request.orient = parse_orient(text);
-              });
+              request.orient, parse_orient, request.orient_text);
 }
 
 /// Declares the options for the files that are written, and for threads and memory.
@@ -304,22 +269,19 @@ void declare_files(CommandLine& line, Draft& draft) {
   line.option("--format", "NAME",
               "Format of '-' and of files with another ending: 'obj', 'ply', 'stl', 'off', "
               "'3mf', 'glb', 'gltf', 'vtp', 'vtk', 'vtu', 'step', 'iges' or 'brep'",
-              [&request](const std::string& text) { request.format = parse_format(text); });
+              request.format, parse_format);
   line.option(
       "--normals", "MODE", "Normals of the file where faces moved: 'recompute' or 'keep' them as they are [recompute]",
-      [&request](const std::string& text) {
-        request.write.normals =
-            parse_word("--normals", text, {"recompute", "keep"}) == 1 ? io::Normals::Keep : io::Normals::Recompute;
+      request.write.normals, [](const std::string& text) {
+        return parse_word("--normals", text, {"recompute", "keep"}) == 1 ? io::Normals::Keep : io::Normals::Recompute;
       });
-  line.option(
-      "--precision", "N",
-      "Significant digits of moved coordinates in text, 1 to 17 [as many as read back to the same number]",
-      [&request](const std::string& text) { request.write.digits = parse_count("--precision", text, 1, kMostDigits); });
-  line.option(
-      "--threads", "N", "Threads; 0 takes all; the result is the same for any number [0]",
-      [&request](const std::string& text) { request.threads = parse_count("--threads", text, 0, kMostThreads); });
+  line.option("--precision", "N",
+              "Significant digits of moved coordinates in text, 1 to 17 [as many as read back to the same number]",
+              request.write.digits, count_of("--precision", 1, kMostDigits));
+  line.option("--threads", "N", "Threads; 0 takes all; the result is the same for any number [0]", request.threads,
+              count_of("--threads", 0, kMostThreads));
   line.option("--max-memory", "SIZE", "Refuse work that would need more, as in 4G [80 % of what is free]",
-              [&request](const std::string& text) { request.max_memory = parse_size(text); });
+              request.max_memory, parse_size);
   line.option("--report", "FILE", "Write what happened as JSON", request.report);
   line.option(
       "--states", "FILE",
@@ -342,21 +304,31 @@ void declare_run(CommandLine& line, Draft& draft) {
   line.option("--strict-faces", "P",
               "Exit with 3 unless 99 % of the faces' area is within P percent of the distance; of layers, at the first "
               "height and outermost",
-              [&request](const std::string& text) { request.strict_faces = parse_strict_faces(text); });
+              request.strict_faces, parse_strict_faces);
   line.option("--strict-certified", "P",
               "With --tolerance: exit with 3 unless P percent of the area is certified to be within it",
-              [&request](const std::string& text) { request.strict_certified = parse_strict_certified(text); });
+              request.strict_certified, parse_strict_certified);
   line.flag("--dry-run", "Read the input, print what would be done, write nothing", request.dry_run);
   line.flag("-q,--quiet", "Print nothing but errors", request.quiet);
   line.flag("-v,--verbose", "Print the mesh's facts and the seconds of each stage", request.verbose);
 }
 
+/// \throw UsageError where the first word is no file, and nearly the name of a command
+void require_no_command(int argc, const char* const* argv) {
+  std::error_code unknown;
+  if (argc < 2 || std::filesystem::exists(argv[1], unknown)) return;
+  for (const char* const command : {"check", "batch"})
+    require(edits_between(argv[1], command) > kMostEdits,
+            fmt::format("{}: no such file; did you mean vdb_offset {}?", argv[1], command));
+}
+
 /// Completes the request by what several options say together.
-void complete(const CommandLine& line, Draft& draft) {
+void complete(Draft& draft) {
   Request& request = draft.request;
-  if (draft.is_iso) request.iso = draft.iso;
-  if (line.has("--tolerance")) request.tolerance = draft.tolerance;
-  if (line.has("--layers") || line.has("--heights")) request.layers = draft.layers;
+  const auto has = [&](const char* option) { return request.given.contains(option); };
+  if (has("--mode iso")) request.iso = draft.iso;
+  if (has("--tolerance")) request.tolerance = draft.tolerance;
+  if (has("--layers") || has("--heights")) request.layers = draft.layers;
   if (draft.no_sync) request.sync = OutputFiles::Sync::No;
   constexpr std::size_t kParts = 5, kPartsTaken = 4;  // four fifths of the free memory, as --help says
   if (request.max_memory == 0) request.max_memory = std::max<std::size_t>(1, available_memory() / kParts * kPartsTaken);
@@ -388,8 +360,7 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
 
 std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   Draft draft;
-  CommandLine line("vdb_offset", kAbout, kMore, "--help all");
-
+  CommandLine line("vdb_offset", kAbout, kMore, "vdb_offset --help all");
   line.add_version(std::string("vdb_offset ") + version());
   line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
             draft.request.input);
@@ -399,9 +370,11 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   declare_offset_options(line, draft);
   line.arrange_help(help_topics(), {"distance", "preset", "corners", "tolerance", "only", "shell", "mode", "layers"},
                     kMoreOfFirst);
+  require_no_command(argc, argv);
   if (!line.parse(argc, argv)) return std::nullopt;
-  require_together(line, draft.is_iso);
-  complete(line, draft);
+  draft.request.given = line.given();
+  require_together(draft.request.given);
+  complete(draft);
   draft.request.command = as_typed(argc, argv);
   draft.request.config = line.config();
   require_sound(draft.request);

@@ -24,7 +24,7 @@ void complete_part_distances(Request& request);
 /// A request that is being made, and values that become part of it only if another option says so.
 struct Draft {
   Request request;
-  bool is_iso = false, no_sync = false;
+  bool no_sync = false;
   IsoRequest iso;
   LayersRequest layers;
   ToleranceRequest tolerance;

@@ -3,10 +3,12 @@
 #include "request/option_rules.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "request/option_values.h"
 #include "vdb_offset/io/cad_file.h"
@@ -17,29 +19,11 @@
 namespace vdb_offset::tool {
 namespace {
 
-using Names = std::initializer_list<const char*>;
-
-/// Requires that none of `options` is given without the option that they need, which `by` names.
-void require_with(const CommandLine& line, bool is_given, const char* by, Names options) {
-  for (const char* const option : options)
-    require(is_given || !line.has(option), fmt::format("{} needs {}", option, by));
-}
-
-/// Requires that none of `options` is given beside the option that excludes them, which `by` names.
-void require_without(const CommandLine& line, bool is_given, const char* by, Names options) {
-  for (const char* const option : options)
-    require(!is_given || !line.has(option), fmt::format("{} and {} exclude each other", option, by));
-}
-
-void require_one(const CommandLine& line, const char* option, const char* other) {
-  require(!line.has(option) || !line.has(other), fmt::format("{} and {} exclude each other", option, other));
-}
-
-/// Requires that nothing of this is given; `as` says in words what is expected instead.
-void require_none(const char* as, std::initializer_list<std::pair<const char*, bool>> given) {
-  for (const auto& [name, is_given] : given)
-    require(!is_given, fmt::format("{}: expected {}, as this is not for {}", name, as,
-                                   std::string(as) == "a mesh" ? "curves" : "meshes"));
+/// The first of some options that is given; null: none is.
+const char* first_given(const Request& request, std::initializer_list<const char*> options) {
+  const auto found =
+      std::find_if(options.begin(), options.end(), [&](const char* option) { return request.given.contains(option); });
+  return found == options.end() ? nullptr : *found;
 }
 
 constexpr const char* kMeshEndings =
@@ -60,23 +44,30 @@ void require_for_curves(const Request& request) {
               ": expected an output that ends in .dat, .txt, .xy, .svg, .dxf or .obj, or with --layers in "
               ".vtu, .su2, .vts or .xyz, as the input holds curves");
   require_structured(request);
-  require_none("a mesh", {{"--only", !request.only.empty()},
-                          {"--border", request.border.has_value()},
-                          {"--distance-of", !request.distances_of.empty()},
-                          {"--symmetry", !request.symmetry_texts.empty()},
-                          {"--obstacle", !request.obstacles.empty()},
-                          {"--shell", request.shell},
-                          {"--mode iso", request.iso.has_value()},
-                          {"--tolerance", request.tolerance.has_value()},
-                          {"--weld", request.weld_text != "auto" && request.weld_text != "exact"},
-                          {"--orient", request.orient_text != "keep"},
-                          {"--deflection", request.deflection.has_value()},
-                          {"--fit", !request.fit.empty()}});
   require(!request.axes || request.write.digits == 0, "--precision and --distance-xy exclude each other for curves");
 }
 
+/// Rules about options and what files are, which are named in words.
+void require_with_files(const Request& request) {
+  constexpr const char *kModel = "an output that ends in .step, .stp or .brep",
+                       *kHollowModel = "--shell of a CAD model",
+                       *kLevelSet = "an input, an obstacle or a --fit that ends in .vdb";
+  using enum OptionRule::Relation;
+  GivenNames given = request.given;
+  if (is_cad_output(request.output, request)) given.insert({kModel, request.shell ? kHollowModel : kModel});
+  const auto is_vdb = [&](const std::string& path) { return format_of(path, request) == io::Format::Vdb; };
+  if (is_vdb(request.input) || is_vdb(request.fit) || std::ranges::any_of(request.obstacles, is_vdb))
+    given.insert(kLevelSet);
+  require_rules(given, {{{"--faceted", "--fit-tolerance", "--collision cut"}, NeedsAnyOf, {kModel}},
+                        {{"--inner", "--layers", "--heights", "--mode iso", "--tolerance", "--distance-xy", "--fit",
+                          "--symmetry", "--miter-limit", "--collision merge"},
+                         Excludes,
+                         {kModel}},
+                        {{"--distance-of", "--only", "--faceted"}, Excludes, {kHollowModel}},
+                        {{"--grid", "--isovalue"}, NeedsAnyOf, {kLevelSet}}});
+}
+
 void require_for_mesh(const Request& request) {
-  require_none("curves", {{"--close", request.close}, {"--flatten", request.flatten.has_value()}});
   require(
       scene::is_scene(request.input) || format_of(request.input, request),
       request.input +
@@ -88,30 +79,12 @@ void require_for_mesh(const Request& request) {
   require(!volume || request.layers || format_of(request.output, request),
           request.output + ": not a mesh format. Use .obj, .ply, .stl ..., or --layers for cells");
   require_structured(request);
-  const bool is_model = is_cad_output(request.output, request);
-  require(is_model || (!request.faceted && request.fit_tolerance == 0),
-          "--faceted and --fit-tolerance: expected an output that ends in .step, .stp or .brep");
-  require(!is_model || !request.shell || (request.distances_of.empty() && request.only.empty() && !request.faceted),
-          request.output + ": --shell excludes --distance-of, --only and --faceted for a CAD model");
-  require(!is_model || !(request.inner || request.layers || request.iso || request.tolerance || request.axes ||
-                         !request.fit.empty() || !request.symmetry_texts.empty() || request.miter_limit),
-          request.output +
-              ": expected a mesh, as a CAD model has no place for --inner, --layers, --mode iso, "
-              "--tolerance, --distance-xy, --fit, --symmetry and --miter-limit");
-  require(is_model || !request.cuts, "--collision cut: expected an output that ends in .step, .stp or .brep");
-  require(!is_model || request.collision != Collision::Merge,
-          request.output + ": expected --collision limit or cut for a CAD model, got merge");
-  require(!request.cuts || request.obstacles.empty(), "--collision cut excludes --obstacle");
+  require_with_files(request);
   const bool is_vdb = is_level_set_output(request.output, request);
   require(!is_vdb || io::format_of(request.output + ".gz") == io::Format::Vdb,
           request.output + ": expected .vdb alone, as OpenVDB packs its grids itself");
   require(!is_vdb || (request.iso && !request.shell),
           request.output + ": expected --mode iso, without --shell, as a level set is written of that surface alone");
-  const auto is_from_vdb = [&](const std::string& path) { return format_of(path, request) == io::Format::Vdb; };
-  require(is_from_vdb(request.input) || is_from_vdb(request.fit) ||
-              std::ranges::any_of(request.obstacles, is_from_vdb) ||
-              (request.level_set.grid.empty() && !request.level_set.isovalue),
-          "--grid and --isovalue: expected an input, an obstacle or a --fit that ends in .vdb");
   require(volume || format_of(request.output, request).has_value(),
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
 }
@@ -129,16 +102,6 @@ void require_endings(const Request& request) {
             fmt::format("{}: expected an obstacle that ends in {}", path, kMeshEndings));
   require(request.fit.empty() || format_of(request.fit, request),
           fmt::format("{}: expected a mesh that ends in {}", request.fit, kMeshEndings));
-}
-
-/// Rules for --tolerance: one offset of a mesh, in which each vertex of the source is one of the result.
-void require_together_with_tolerance(const CommandLine& line, bool is_iso) {
-  const bool is_given = line.has("--tolerance");
-  require_with(line, is_given, "--tolerance", {"--max-faces", "--refined-source", "--map", "--strict-certified"});
-  require(!is_given || !is_iso, "--tolerance and --mode iso exclude each other");
-  require_without(line, is_given, "--tolerance",
-                  {"--distance-xy", "--distance-z", "--distance-of", "--blend", "--fit", "--shell", "--layers",
-                   "--heights", "--paths", "--save-vdb", "--dry-run"});
 }
 
 /// Requires one distance, and names for files that can hold what is to be written.
@@ -163,41 +126,57 @@ void require_even(const Request& request) {
 
 }  // namespace
 
-void require_together(const CommandLine& line, bool is_iso) {
-  const bool layers = line.has("--layers") || line.has("--heights"), fit = line.has("--fit"),
-             axes = line.has("--distance-xy") || line.has("--distance-z");
-  require_with(line, is_iso, "--mode iso", {"--adaptivity", "--inside", "--keep-specks", "--transport"});
-  if (is_iso) require(!layers, "--layers and --mode iso exclude each other");
-  require_without(line, is_iso, "--mode iso",
-                  {"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--corners",
-                   "--solver", "--states", "--paths", "--html", "--save-vdb"});
-  require_with(line, layers, "--layers", {"--first-height", "--total-thickness", "--growth", "--structured"});
-  if (layers) {
-    require(line.has("--heights") + line.has("--first-height") + line.has("--total-thickness") == 1,
-            "--layers needs one of --first-height, --total-thickness and --heights");
-    require(!line.has("--heights") || !line.has("--growth"), "--growth needs --first-height or --total-thickness");
-  }
-  require_without(line, layers, "--layers",
-                  {"--distance", "--distance-from", "--shell", "--collision", "--paths", "--save-vdb"});
-  const auto instead_of_distance = [&](bool is_given, const char* by) {
-    require_without(line, is_given, by, {"--distance", "--distance-from"});
-    require(!is_given || !layers, fmt::format("--layers and {} exclude each other", by));
-    require_without(line, is_given, by, {"--shell", "--obstacle", "--save-vdb"});
+void require_rules(const GivenNames& given, const std::vector<OptionRule>& rules) {
+  const auto is_given = [&](const std::string& name) { return given.contains(name); };
+  for (const auto& [options, relation, others] : rules)
+    for (const std::string& option : options) {
+      if (!is_given(option)) continue;
+      const auto count = std::count_if(others.begin(), others.end(), is_given);
+      if (relation == OptionRule::Excludes && count > 0)
+        throw UsageError(
+            fmt::format("{} and {} exclude each other", option, *std::find_if(others.begin(), others.end(), is_given)));
+      require(relation != OptionRule::NeedsAnyOf || count > 0,
+              fmt::format("{} needs {}", option, fmt::join(others, " or ")));
+      require(relation != OptionRule::NeedsOneOf || count == 1,
+              fmt::format("{} needs one of {}", option, fmt::join(others, ", ")));
+    }
+}
+
+void require_together(const GivenNames& given) {
+  using enum OptionRule::Relation;
+  const std::vector<OptionRule> rules = {
+      {{"--adaptivity", "--inside", "--keep-specks", "--transport"}, NeedsAnyOf, {"--mode iso"}},
+      {{"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--corners", "--solver",
+        "--states", "--paths", "--html", "--save-vdb", "--normals keep", "--layers", "--heights", "--fit",
+        "--tolerance", "--distance-of", "--blend"},
+       Excludes,
+       {"--mode iso"}},
+      {{"--first-height", "--total-thickness", "--growth"}, Excludes, {"--heights"}},
+      {{"--first-height", "--total-thickness", "--growth"}, NeedsAnyOf, {"--layers"}},
+      {{"--structured"}, NeedsAnyOf, {"--layers", "--heights"}},
+      {{"--layers"}, NeedsOneOf, {"--first-height", "--total-thickness", "--heights"}},
+      {{"--max-faces", "--refined-source", "--map", "--strict-certified"}, NeedsAnyOf, {"--tolerance"}},
+      {{"--distance-xy", "--distance-z", "--distance-of", "--blend", "--fit", "--shell", "--layers", "--heights",
+        "--paths", "--save-vdb", "--dry-run"},
+       Excludes,
+       {"--tolerance"}},
+      {{"--distance", "--distance-from", "--shell", "--save-vdb", "--distance-of", "--blend"},
+       Excludes,
+       {"--layers", "--heights", "--distance-xy", "--distance-z", "--fit"}},
+      {{"--distance-xy", "--distance-z", "--fit"}, Excludes, {"--layers", "--heights"}},
+      {{"--distance-xy"}, NeedsAnyOf, {"--distance-z"}},
+      {{"--distance-z"}, NeedsAnyOf, {"--distance-xy"}},
+      {{"--obstacle"}, Excludes, {"--distance-xy", "--fit", "--collision cut"}},
+      {{"--collision", "--paths"}, Excludes, {"--layers", "--heights"}},
+      {{"--collision", "--corners", "--distance-xy"}, Excludes, {"--fit"}},
+      {{"--fit"}, NeedsAnyOf, {"--clearance"}},
+      {{"--clearance"}, NeedsAnyOf, {"--obstacle", "--fit"}},
+      {{"--inner"}, NeedsAnyOf, {"--shell"}},
+      {{"--distance-from"}, Excludes, {"--distance"}},
+      {{"--voxel-size"}, Excludes, {"--voxels-per-distance"}},
+      {{"--quiet"}, Excludes, {"--verbose"}},
   };
-  require_without(line, is_iso || layers || axes || fit, "--mode iso, --layers, --distance-xy or --fit",
-                  {"--distance-of", "--blend"});
-  instead_of_distance(axes, "--distance-xy");
-  require_without(line, axes, "--distance-xy", {"--fit"});
-  instead_of_distance(fit, "--fit");
-  require(!fit || !is_iso, "--mode iso and --fit exclude each other");
-  require_without(line, fit, "--fit", {"--collision", "--corners"});
-  require_with(line, line.has("--clearance"), "--clearance", {"--fit"});
-  require_with(line, fit || line.has("--obstacle"), "--obstacle or --fit", {"--clearance"});
-  require_with(line, line.has("--shell"), "--shell", {"--inner"});
-  require_together_with_tolerance(line, is_iso);
-  require_one(line, "--distance-from", "--distance");
-  require_one(line, "--voxel-size", "--voxels-per-distance");
-  require_one(line, "--quiet", "--verbose");
+  require_rules(given, rules);
 }
 
 void require_states_file(const Request& request) {
@@ -216,13 +195,22 @@ void require_miters(const Request& request) {
   require(!request.miter_limit || !are_round, "--miter-limit needs --corners miter");
 }
 
+void require_options_for(const Request& request, bool curves, const char* meshes) {
+  if (const char* const of_curves = first_given(request, {"--close", "--flatten"}); of_curves && !curves)
+    throw UsageError(fmt::format("{}: expected curves, as this is not for meshes", of_curves));
+  const char* of_meshes = first_given(
+      request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle", "--shell", "--mode iso",
+                "--tolerance", "--orient fix-direction-only", "--orient fix-cavities", "--deflection", "--fit"});
+  if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";
+  if (of_meshes && curves)
+    throw UsageError(fmt::format("{}: expected {}, as this is not for curves", of_meshes, meshes));
+}
+
 void require_sound(const Request& request) {
   require_miters(request);
-  require(!request.iso || request.write.normals == io::Normals::Recompute,
-          "--normals keep and --mode iso exclude each other");
   require_endings(request);
   require(request.layers || !request.distances.empty() || scene::is_scene(request.input),
-          "--distance: expected a distance (a scene alone brings its own)");
+          "missing --distance (a scene alone brings its own)");
   require(request.output != "-" || !request.layers, "OUTPUT: expected a file for layers, got '-'");
   require(request.output != "-" || request.distances.size() < 2, "OUTPUT: expected a file for each distance, got '-'");
   require_even(request);
@@ -234,6 +222,7 @@ void require_sound(const Request& request) {
 }
 
 void require_for_input(const Request& request, bool curves) {
+  require_options_for(request, curves, "a mesh");
   if (curves) require_for_curves(request);
   else require_for_mesh(request);
 }

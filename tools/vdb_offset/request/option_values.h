@@ -33,8 +33,17 @@ std::size_t parse_word(const char* option, const std::string& text, std::initial
 /// A number above one bound and up to another. `expected` says in words which numbers these are.
 double parse_number(const char* option, const std::string& text, const char* expected, double above, double most);
 
+/// Parses such numbers.
+inline auto number_of(const char* option, const char* expected, double above, double most) {
+  return [=](const std::string& text) { return parse_number(option, text, expected, above, most); };
+}
+
 /// A whole number, in decimal digits.
 int parse_count(const char* option, const std::string& text, int least, int most);
+/// Parses such numbers.
+inline auto count_of(const char* option, int least, int most) {
+  return [=](const std::string& text) { return parse_count(option, text, least, most); };
+}
 
 /// Bytes with an optional suffix K, M, G or T (binary), as in "4G" or "1.5 GiB".
 std::size_t parse_size(const std::string& text);

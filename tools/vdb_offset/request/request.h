@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ namespace vdb_offset::tool {
 struct UsageError : Error {
   using Error::Error;
 };
+
+/// The options that were given, by their long names, and again with each value, as in "--mode iso".
+using GivenNames = std::set<std::string>;
 
 /// One distance that is asked for, and how.
 struct DistanceRequest {
@@ -67,6 +71,7 @@ struct ToleranceRequest {
 /// What a command line asks for: options that go together, each with a value that it can have. It depends on the words
 /// of the command line alone, as no file has been opened for it; resolve() makes a Job of it.
 struct Request {
+  GivenNames given;
   std::string input, output;
   std::string config;                          ///< The file that options were taken from, too; empty: none.
   std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own, and for layers.
