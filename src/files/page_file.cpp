@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the HTML file that shows a run in a browser. The source and the surfaces beside it go in; if they have more
+// Writes the HTML file that shows a run in a browser. The source and the surfaces made of it go in; if they have more
 // triangles than are shown, view_mesh.cpp leaves fewer vertices, those that are farthest from what was asked before
 // others. What is shown becomes arrays of numbers, positions as seen from one centre in single precision, and
 // everything else JSON. Both are filled into the page that the library was built with, together with the viewer's
@@ -28,7 +28,7 @@ namespace {
 std::vector<float> weights_of(const Page& page, const std::vector<std::vector<float>>& shares) {
   std::vector<float> weights(page.source.positions.size(), 0.0F);
   for (std::size_t s = 0; s < shares.size(); ++s)
-    for (std::size_t v = 0; v < weights.size(); ++v) {
+    for (std::size_t v = 0; v < shares[s].size(); ++v) {
       const std::span<const VertexState> states = page.surfaces[s].states;
       const bool is_short = !states.empty() && falls_short(states[v]);
       const float off = std::isnan(shares[s][v]) ? 0.0F : std::abs(1 - shares[s][v]);
@@ -69,6 +69,8 @@ std::vector<float> seen_from(const Vec3d& centre, const std::function<Vec3d(std:
   return numbers;
 }
 
+bool has_groups(const Page& page) { return page.groups && !page.groups->of_face.empty(); }
+
 /// Faults of so many faces are marked at most; far more are seen without marks.
 constexpr std::size_t kMostMarkedFaults = 100'000;
 
@@ -91,6 +93,8 @@ std::size_t add_faults(const Page& page, const PageSurface& surface, const std::
   arrays.add(name + ".fault_at", seen_from(centre, middle, faces));
   arrays.add(name + ".fault", taken<std::uint8_t>(faces, [&](std::uint32_t f) { return surface.face_faults[f]; }));
   arrays.add(name + ".fault_face", faces);
+  if (has_groups(page))
+    arrays.add(name + ".fault_group", taken<std::uint32_t>(faces, [&](auto f) { return page.groups->of_face[f]; }));
   return count;
 }
 
@@ -114,9 +118,33 @@ nlohmann::json add_surface(const PageSurface& surface, std::span<const float> sh
   return facts;
 }
 
+/// Puts what is drawn of a mesh into the arrays, whose names begin with `name`.
+void add_mesh(const ViewMesh& view, const std::string& name, PageArrays& arrays) {
+  arrays.add(name + "vertex", view.vertices);
+  arrays.add(name + "corners", view.corners);
+  arrays.add(name + "face", view.face);
+  arrays.add(name + "edges", view.edges);
+}
+
+nlohmann::json counts_of(const ViewMesh& view) {
+  return {{"elements", view.element_count()}, {"of", view.elements_of_mesh}};
+}
+
+/// Puts a surface with a mesh of its own into the arrays, and returns what the page says of it.
+nlohmann::json add_own(const PageSurface& surface, bool are_curves, std::size_t most, const std::string& name,
+                       const Vec3d& centre, PageArrays& arrays) {
+  const PolygonView& mesh = *surface.own;
+  const ViewMesh view = view_of(mesh, are_curves, std::vector<float>(mesh.positions.size(), 0.0F), most);
+  const auto position = [&](std::size_t v) { return mesh.positions[v]; };
+  add_mesh(view, name + ".", arrays);
+  arrays.add(name + ".positions", seen_from(centre, position, view.vertices));
+  return {{"name", surface.name}, {"shown", counts_of(view)}, {"vertices", mesh.positions.size()}};
+}
+
 nlohmann::json facts_of(const Page& page, PageArrays& arrays) {
   std::vector<std::vector<float>> shares;
-  for (const PageSurface& surface : page.surfaces) shares.push_back(shares_of(surface, page.source.positions.size()));
+  for (const PageSurface& surface : page.surfaces)
+    shares.push_back(surface.own ? std::vector<float>() : shares_of(surface, page.source.positions.size()));
   const std::size_t most = page.most_triangles / (page.surfaces.size() + 1);
   const ViewMesh view = view_of(page.source, page.are_curves, weights_of(page, shares), most);
   const Vec3d centre = centre_of(page.source.positions, view.vertices);
@@ -132,21 +160,24 @@ nlohmann::json facts_of(const Page& page, PageArrays& arrays) {
                           {"states", states},
                           {"faults", fault_words},
                           {"vertices", page.source.positions.size()},
-                          {"shown", {{"elements", view.element_count()}, {"of", view.elements_of_mesh}}},
+                          {"shown", counts_of(view)},
+                          {"unit", page.unit},
+                          {"up", page.up},
                           {"remarks", page.remarks},
                           {"surfaces", nlohmann::json::array()}};
-  arrays.add("vertex", view.vertices);
-  arrays.add("corners", view.corners);
-  arrays.add("face", view.face);
-  arrays.add("edges", view.edges);
+  add_mesh(view, "", arrays);
   arrays.add("source.positions", seen_from(
                                      centre, [&](std::size_t v) { return page.source.positions[v]; }, view.vertices));
-  if (page.groups && !page.groups->of_face.empty()) {
+  if (has_groups(page)) {
     facts["groups"] = page.groups->names;
     arrays.add("group", taken<std::uint32_t>(view.face, [&](std::uint32_t f) { return page.groups->of_face[f]; }));
   }
   for (std::size_t s = 0; s < page.surfaces.size(); ++s) {
     const std::string name = fmt::format("surface{}", s);
+    if (page.surfaces[s].own) {
+      facts["surfaces"].push_back(add_own(page.surfaces[s], page.are_curves, most, name, centre, arrays));
+      continue;
+    }
     nlohmann::json surface = add_surface(page.surfaces[s], shares[s], name, view, centre, arrays);
     if (const std::size_t faults = add_faults(page, page.surfaces[s], name, centre, arrays)) surface["faults"] = faults;
     facts["surfaces"].push_back(std::move(surface));
@@ -213,6 +244,8 @@ void write_page(const std::string& path, const Page& page) {
           {"arrays", packed},
           {"figures", parts.figures},
           {"view", parts.view},
+          {"colours", parts.colours},
+          {"places", parts.places},
           {"script", parts.script}},
          sink);
   });

@@ -19,5 +19,5 @@ set(page_folder ${CMAKE_CURRENT_SOURCE_DIR}/page)
 # A compiler does not see which files the assembler takes; nor does ccache, which leaves such a source alone.
 set_source_files_properties(page/page_parts.cpp PROPERTIES
   SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON
-  OBJECT_DEPENDS "${page_folder}/page.html;${page_folder}/page.css;${page_folder}/figures.js;${page_folder}/view.js;${page_folder}/page.js;${THREE_SCRIPT};${THREE_CONTROLS};${THREE_LICENCE}"
+  OBJECT_DEPENDS "${page_folder}/page.html;${page_folder}/page.css;${page_folder}/figures.js;${page_folder}/view.js;${page_folder}/colours.js;${page_folder}/places.js;${page_folder}/page.js;${THREE_SCRIPT};${THREE_CONTROLS};${THREE_LICENCE}"
   COMPILE_DEFINITIONS "VDB_OFFSET_PAGE_FOLDER=\"${page_folder}\";VDB_OFFSET_THREE=\"${THREE_SCRIPT}\";VDB_OFFSET_THREE_CONTROLS=\"${THREE_CONTROLS}\";VDB_OFFSET_THREE_LICENCE=\"${THREE_LICENCE}\"")

@@ -46,6 +46,7 @@ def no_place_for_a_message(place, case):
 PRINTED = {
     'help': '--help', 'version': '--version', 'check help': 'check --help', 'plan': 'box.obj o.obj -d 0.1 --dry-run',
     'plan of a surface': 'box.obj o.obj -d 0.1 --mode iso --dry-run', 'check': 'check box.obj box.obj',
+    'view': 'view box.obj --no-open --html p.html', 'page': 'view box.obj box.obj --html -', 'view help': 'view --help',
     'plan of layers': 'box.obj o.vtu --layers 2 --first-height 0.1 --dry-run',
     'check as JSON': 'check box.obj box.obj --json', 'report': 'box.obj o.obj -d 0.1 --report -',
     'mesh': 'box.obj - --format obj -d 0.1', 'compressed': 'box.obj - --format ply -d 0.1',

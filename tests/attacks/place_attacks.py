@@ -15,6 +15,8 @@ ROLES = {
     'faces': ('mesh.obj', 'out.obj', '-d', '0.1', '--only', 'faces={}'),
     'obstacle': ('mesh.obj', 'out.obj', '-d', '0.1', '--obstacle', '{}'),
     'check': ('check', 'mesh.obj', '{}'),
+    'view': ('view', '{}', '--no-open', '--html', 'page.html'),
+    'view result': ('view', 'mesh.obj', '{}', '--no-open', '--html', 'page.html'),
 }
 ENDINGS = {'scene': 'json', 'distances': 'txt', 'heights': 'txt', 'faces': 'txt'}
 

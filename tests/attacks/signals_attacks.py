@@ -34,6 +34,7 @@ KINDS = {
     'block': (['c.txt', 'o.vts', '--layers', '80', '--total-thickness', '0.1', '--structured'], ['o.vts']),
     'check': (['check', 'm.obj', 'm.obj', '-d', '0', '--report', 'r.json', '--states', 's.csv', '--html', 'p.html'],
               ['r.json', 's.csv', 'p.html']),
+    'view': (['view', 'm.obj', 'm.obj', '-d', '0', '--no-open', '--html', 'p.html'], ['p.html']),
     'curves': (['c.txt', 'o.svg', '-d', '0.01', '--report', 'r.json'], ['o.svg', 'r.json']),
 }
 KILLS = int(os.environ.get('VDB_OFFSET_KILLS', 14))  # of each kind

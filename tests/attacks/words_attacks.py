@@ -57,6 +57,8 @@ LONG_LINES = {
     'check': (2, ['check', LONG + '.obj', 'box.obj'], 'cannot'),
     'check offset': (2, ['check', 'box.obj', LONG + '.obj'], 'cannot|ends in'),
     'check option': (1, ['check', 'box.obj', 'box.obj', '--' + LONG], 'unknown option --aaa'),
+    'view': (2, ['view', LONG + '.obj', '--no-open', '--html', 'p.html'], 'cannot'),
+    'view page': (1, ['view', 'box.obj', '--no-open', '--html', LONG], 'expected a page'),
     'scene': (2, ['scene.json', 'o.obj'], 'scene.json'),
     'check of a shape': (2, ['check', 'shape.json', 'box.obj'], "shape.json: expected a mesh.* got a scene's shape"),
 }

@@ -37,13 +37,16 @@ class ShellCommand {
         std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
   }
 
+  std::string environment;  ///< Variables that the command gets besides, as NAME=VALUE.
+
   Run operator()(const std::string& arguments) const {
     const std::string err = (std::filesystem::temp_directory_path() / ("vdb_offset_err_" + std::to_string(::getpid())))
                                 .string(),
                       out = err + "_out";
-    const int status = std::system(("cd '" + path_.string() + "' && exec '" + vdb_offset::test::command_path() + "' " +
-                                    arguments + " >" + out + " 2>" + err + " </dev/null")
-                                       .c_str());
+    const int status =
+        std::system(("cd '" + path_.string() + "' && exec env " + environment + " '" +
+                     vdb_offset::test::command_path() + "' " + arguments + " >" + out + " 2>" + err + " </dev/null")
+                        .c_str());
     Run run{WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), slurp(out), slurp(err)};
     std::filesystem::remove(err);
     std::filesystem::remove(out);

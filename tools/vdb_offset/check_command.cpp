@@ -48,29 +48,28 @@ constexpr const char* kCheckAbout =
 constexpr const char* kCheckMore = R"(
 Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex short), 4 output.)";
 
-/// What the command line of `check` asks for.
-struct CheckRequest {
-  Request
-      made;  ///< The options with which OFFSET was made of SOURCE, as far as they are given, and this command's own.
-  std::string distance, distance_from;
-  std::optional<AxisDistances> axes;
-  bool json = false;
-};
-
-/// Declares the options that say how the offset was made.
-void declare_offset(CommandLine& line, CheckRequest& request, std::string& distance_xy, std::string& distance_z) {
+/// Declares the options that say how far the offset was to go.
+void declare_how_far(CommandLine& line, CheckRequest& request) {
   Request& made = request.made;
   line.add_unit(made.unit, made.input);
   line.option("-d,--distance", "D",
               "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
               "expression [the median of what is found]",
               request.distance);
-  line.option("--distance-xy", "A", "Instead, with --distance-z: as it was for the offset", distance_xy);
-  line.option("--distance-z", "B", "The distance along z, with --distance-xy", distance_z);
+  line.option("--distance-xy", "A", "Instead, with --distance-z: as it was for the offset", request.distance_xy);
+  line.option("--distance-z", "B", "The distance along z, with --distance-xy", request.distance_z);
   line.option("--distance-from", "FILE",
               "Instead: a number for each vertex, as text or .npy, 'ply:NAME', a vertex "
               "property of SOURCE, or 'vtk:NAME', an array of its points",
               request.distance_from);
+}
+
+}  // namespace
+
+void declare_measuring(CommandLine& line, CheckRequest& request) {
+  Request& made = request.made;
+  made.border = Border::Slide;
+  declare_how_far(line, request);
   line.repeated(
       "--only", "PART",
       "The part that was offset: 'group=NAME', 'material=NAME', 'faces=FILE', 'holes' ('holes<8', 'holes>8'), "
@@ -117,12 +116,26 @@ void declare_offset(CommandLine& line, CheckRequest& request, std::string& dista
   line.flag("--close", "SOURCE's curves were closed for the offset, where their ends are near each other", made.close);
 }
 
+void require_measuring(const CommandLine& line, CheckRequest& request) {
+  Request& made = request.made;
+  made.given = line.given();
+  require_miters(made);
+  require_page(made);
+  using enum OptionRule::Relation;
+  require_rules(made.given, {{{"--clearance"}, NeedsAnyOf, {"--obstacle"}},
+                             {{"--distance-from"}, Excludes, {"--distance"}},
+                             {{"--distance-xy"}, NeedsAnyOf, {"--distance-z"}},
+                             {{"--distance-z"}, NeedsAnyOf, {"--distance-xy"}},
+                             {{"--distance", "--obstacle", "--tolerance"}, Excludes, {"--distance-xy"}}});
+  request.axes = parse_axes(request.distance_xy, request.distance_z);
+}
+
+namespace {
+
 /// Reads the command line. None if it asked only for help, which is then printed.
 std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
   CheckRequest request;
   Request& made = request.made;
-  made.border = Border::Slide;
-  std::string distance_xy, distance_z;
   CommandLine line("vdb_offset check", kCheckAbout, kCheckMore, "vdb_offset check --help all");
   line.file(
       "SOURCE",
@@ -130,7 +143,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
       ".txt .xy .svg .dxf .obj)",
       made.input);
   line.file("OFFSET", "Mesh or curves after", made.output);
-  declare_offset(line, request, distance_xy, distance_z);
+  declare_measuring(line, request);
   line.option("--threads", "N", "Threads; 0 takes all [0]", made.threads, count_of("--threads", 0, kMostThreads));
   line.option("--report", "FILE", "Write what is found as JSON", made.report);
   line.option("--states", "FILE",
@@ -152,17 +165,8 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
                     {"distance", "corners", "tolerance", "strict", "strict-faces", "report", "states", "html"},
                     kCheckMore);
   if (!line.parse(argc, argv)) return std::nullopt;
-  made.given = line.given();
-  require_miters(made);
+  require_measuring(line, request);
   require_states_file(made);
-  require_page(made);
-  using enum OptionRule::Relation;
-  require_rules(made.given, {{{"--clearance"}, NeedsAnyOf, {"--obstacle"}},
-                             {{"--distance-from"}, Excludes, {"--distance"}},
-                             {{"--distance-xy"}, NeedsAnyOf, {"--distance-z"}},
-                             {{"--distance-z"}, NeedsAnyOf, {"--distance-xy"}},
-                             {{"--distance", "--obstacle", "--tolerance"}, Excludes, {"--distance-xy"}}});
-  request.axes = parse_axes(distance_xy, distance_z);
   return request;
 }
 
@@ -194,15 +198,18 @@ void require_outputs_apart(const CheckRequest& request, std::span<const std::str
 }
 
 /// The positions of the source's vertices in the offset, which has the same faces or, in another format, as STL and
-/// glTF, their triangles; these then are what is judged.
-io::InTriangles find_in_offset(const Request& made, const io::MeshFile& source_file, const io::MeshFile& offset_file) {
+/// glTF, their triangles; these then are what is judged. None if it has others.
+std::optional<io::InTriangles> find_in_offset(const io::MeshFile& source_file, const io::MeshFile& offset_file) {
   const Polygons &source = source_file.polygons, &offset = offset_file.polygons;
   if (source.positions.size() == offset.positions.size() && source.face_begin == offset.face_begin &&
       source.corners == offset.corners)
-    return {offset.positions, {}};
+    return io::InTriangles{offset.positions, {}};
   const bool may_be_triangles = offset_file.format != source_file.format || offset_file.format == io::Format::Stl;
-  if (may_be_triangles)
-    if (auto found = io::find_in_triangles(source.view(), offset.view())) return std::move(*found);
+  if (may_be_triangles) return io::find_in_triangles(source.view(), offset.view());
+  return {};
+}
+
+[[noreturn]] void refuse_other_faces(const Request& made, PolygonView source, PolygonView offset) {
   throw InvalidInput(
       fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}{}", made.output, made.input,
                   source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
@@ -266,15 +273,23 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
 }
 
 /// Writes what was found of each vertex and face, as far as that is asked for.
-void write_findings(const Request& made, PolygonView source, std::span<const Vec3d> positions,
+void write_findings(const Request& made, const Source& source, std::span<const Vec3d> positions,
                     const CheckResult& result, const io::ResultFaces& faces) {
+  const PolygonView mesh = source.view();
   if (!made.states.empty())
-    io::write_states(made.states, {positions, source.corners, source.face_begin},
+    io::write_states(made.states, {positions, mesh.corners, mesh.face_begin},
                      {result.states, result.achieved, result.distances}, faces);
   if (!made.html.empty()) write_page(made, source, positions, result, faces);
 }
 
-CheckResult measure_curves(const CheckRequest& request) {
+/// Shows a result of which nothing can be measured.
+void show_unmeasured(const Request& made, const Source& source, PolygonView result) {
+  constexpr const char* kRemark = "has other vertices or faces than the source, so nothing is measured of it";
+  tell(fmt::format("{}: {}", made.output, kRemark));
+  write_page(made, source, result, std::string("The result ") + kRemark + ".");
+}
+
+std::optional<CheckResult> measure_curves(const CheckRequest& request) {
   const Request& made = request.made;
   const Source source = read_source(made, true);
   io::CurveReading how = curve_reading(made);
@@ -282,6 +297,10 @@ CheckResult measure_curves(const CheckRequest& request) {
   if (source.curves->flattened_shapes > 0) how = {0, source.curves->flattened_to};
   const io::CurveFile offset = io::read_curves(made.output, how);
   const CurvesView curves = source.view();
+  if (request.may_differ && curves.positions.size() != offset.file.polygons.positions.size()) {
+    show_unmeasured(made, source, offset.file.polygons.view());
+    return {};
+  }
   require_same_points(made, curves, offset.file.polygons.view());
   const Job job = resolve_options(made, source);
   CheckOptions options;
@@ -291,21 +310,27 @@ CheckResult measure_curves(const CheckRequest& request) {
   options.precision = io::precision_of_curves(made.output, *source.curves, made.write);
   if (!job.distances.empty()) options.distance = job.distances.front();
   CheckResult result = check_curves(curves, offset.file.polygons.positions, options);
-  write_findings(made, curves, offset.file.polygons.positions, result, {{}, nullptr, true});
+  write_findings(made, source, offset.file.polygons.positions, result, {{}, nullptr, true});
   return result;
 }
 
-CheckResult measure_meshes(const CheckRequest& request) {
+std::optional<CheckResult> measure_meshes(const CheckRequest& request) {
   const Request& made = request.made;
   const Source source = read_source(made, false);
-  if (!source.file) throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
+  if (!source.file && !request.may_differ)
+    throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);
   tell_remarks(offset);
   std::vector<std::string> named = source.files_named;
   for (const auto* const files : {&offset.files_beside, &offset.files_named})
     named.insert(named.end(), files->begin(), files->end());
   require_outputs_apart(request, named);
-  const auto [positions, triangles] = find_in_offset(made, *source.file, offset);
+  const auto found = source.file ? find_in_offset(*source.file, offset) : std::nullopt;
+  if (!found) {
+    if (!request.may_differ) refuse_other_faces(made, source.view(), offset.polygons.view());
+    show_unmeasured(made, source, offset.polygons.view());
+    return {};
+  }
   const Job job = resolve_options(made, source);
   CheckOptions options;
   options.only = job.options.only;
@@ -333,14 +358,28 @@ CheckResult measure_meshes(const CheckRequest& request) {
   }
   options.keep_face_errors = made.states.ends_with(".vtp") || !made.html.empty();
   PolygonView judged = source.view();
-  judged.triangles = triangles;
-  CheckResult result = check_offset(judged, positions, options);
+  judged.triangles = found->triangles;
+  CheckResult result = check_offset(judged, found->positions, options);
   const WallNames groups = io::wall_names(*source.file);
-  write_findings(made, source.view(), positions, result, {result.face_errors, &groups, false, result.face_faults});
+  write_findings(made, source, found->positions, result, {result.face_errors, &groups, false, result.face_faults});
   return result;
 }
 
 }  // namespace
+
+std::optional<CheckResult> measure(CheckRequest& request) {
+  const Request& made = request.made;
+  tell_of_lost_input(made.input);
+  request.are_curves = holds_curves(made.input);
+  if (request.are_curves && request.axes)
+    throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
+  require_options_for(made, request.are_curves, "meshes");
+  take_distances(request);
+  require_outputs_apart(request);
+  for (const std::string& path : {made.report, made.states, made.html})
+    if (!path.empty()) require_writable(path);
+  return request.are_curves ? measure_curves(request) : measure_meshes(request);
+}
 
 bool is_check(int argc, const char* const* argv) { return argc > 1 && std::string(argv[1]) == "check"; }
 
@@ -349,23 +388,15 @@ int run_check(int argc, const char* const* argv) {
   if (!request) return kDone;
   request->made.command = as_typed(argc, argv);
   const Request& made = request->made;
-  tell_of_lost_input(made.input);
-  const bool curves = holds_curves(made.input);
-  if (curves && request->axes) throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");
-  require_options_for(made, curves, "meshes");
-  take_distances(*request);
-  require_outputs_apart(*request);
-  for (const std::string& path : {made.report, made.states, made.html})
-    if (!path.empty()) require_writable(path);
   OutputFiles outputs(made.sync);
-  const CheckResult result = curves ? measure_curves(*request) : measure_meshes(*request);
+  const CheckResult result = measure(*request).value();
   const std::string json = check_json(result, made.input, made.output);
   if (!made.report.empty()) write_file(made.report, json);
   outputs.commit(ignore_interrupts);
   const Printout out(is_standard_output(made.report) || is_standard_output(made.states) ||
                      is_standard_output(made.html));
   if (request->json) fmt::print(out, "{}", json);
-  else print(out, result, curves);
+  else print(out, result, request->are_curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
   if (made.strict_faces && !are_within(result.faces, *made.strict_faces, made.output)) return kProcessing;
   if (result.certified && !is_certified(*result.certified, made.certified_asked(), made.output)) return kProcessing;

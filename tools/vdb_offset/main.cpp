@@ -18,6 +18,7 @@
 #include "messages.h"
 #include "offset_command.h"
 #include "outputs.h"
+#include "page/view_command.h"
 #include "request/request.h"
 #include "source.h"
 #include "terminal.h"
@@ -71,6 +72,7 @@ int fail(ExitCode code, const char* message) {
 
 int run(int argc, char** argv) {
   if (is_check(argc, argv)) return run_check(argc, argv);
+  if (is_view(argc, argv)) return run_view(argc, argv);
   if (is_batch(argc, argv)) return run_batch(argc, argv);
   const auto request = parse_command_line(argc, argv);
   return request ? run(*request) : kDone;

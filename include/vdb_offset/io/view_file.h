@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,8 +50,8 @@ VDB_OFFSET_API bool is_lines_file(const std::string& path);
 VDB_OFFSET_API void write_path_lines(const std::string& path, const std::vector<std::vector<Vec3d>>& paths,
                                      const VertexStates& states);
 
-/// A surface that a page shows beside the source, with the source's vertices and faces. Spans of what is not known are
-/// empty.
+/// A surface that a page shows with the source: the source's vertices and faces in other places, or a mesh of its own,
+/// of which nothing is measured. Spans of what is not known are empty.
 struct PageSurface {
   std::string name;                                   ///< What the page calls it.
   std::function<Vec3d(std::size_t vertex)> position;  ///< World units; only asked for what is shown.
@@ -60,6 +61,7 @@ struct PageSurface {
   std::span<const double> share;       ///< Of what was asked; it is counted from the distances where those are known.
   std::span<const float> face_errors;  ///< As OffsetResult::face_errors.
   std::span<const FaceFault> face_faults;  ///< As OffsetResult::face_faults.
+  std::optional<PolygonView> own;          ///< A mesh that is not the source's; then all but the name is unused.
 };
 
 /// What a page shows of a run. Refers to what it is made of.
@@ -70,9 +72,11 @@ struct Page {
   PolygonView source;
   bool are_curves = false;              ///< The "faces" are plane curves, and the surfaces too.
   bool are_layers = false;              ///< The surfaces lie one on the other, and can be peeled off.
-  std::vector<PageSurface> surfaces;    ///< From the source outward.
+  std::vector<PageSurface> surfaces;    ///< From the source outward; none: the source is shown alone.
   const WallNames* groups = nullptr;    ///< What the source calls its faces.
   std::span<const float> cell_quality;  ///< Of cells between the surfaces: scaled Jacobians.
+  std::string unit;                     ///< Of lengths, as in "mm"; empty: not known.
+  int up = 2;                           ///< The axis that is up, from 0.
   std::vector<std::string> remarks;     ///< What the page has to say of what it does not show.
   /// More triangles than this are shown by fewer, source and surfaces together. So many take 7 MB, and a second to draw
   /// on two cores without a graphics card.

@@ -10,6 +10,7 @@ const FIGURES = (function () {
   const UNKNOWN = 0xb0b4b9;
   const SHARE_RAMP = [[0, 0xa50f15], [0.5, 0xf28e2b], [0.999, 0xffe9a8], [1, 0x6aaed6], [2, 0x7b3294]];
   const ERROR_RAMP = [[0, 0x6aaed6], [0.25, 0xffe9a8], [0.6, 0xf28e2b], [1, 0xa50f15]];
+  const LENGTH_RAMP = [[0, 0x440154], [0.25, 0x3b528b], [0.5, 0x21918c], [0.75, 0x5ec962], [1, 0xfde725]];
 
   function make(tag, parent, text, attributes) {
     const element = document.createElement(tag);
@@ -20,6 +21,8 @@ const FIGURES = (function () {
   }
   const inWords = count => Number(count).toLocaleString('en');
   const inDigits = number => Number.isFinite(number) ? String(Number(number.toPrecision(7))) : '–';
+  // A length with its unit, as far as the file states one.
+  const lengthIn = (facts, length) => inDigits(length) + (facts.unit ? ` ${facts.unit}` : '');
   const css = colour => '#' + colour.toString(16).padStart(6, '0');
 
   function onRamp(ramp, value) {
@@ -37,8 +40,8 @@ const FIGURES = (function () {
     return ramp[ramp.length - 1][1];
   }
 
-  // Bars whose heights are logarithms, so that a few vertices beside a million can be seen.
-  function bars(parent, title, entries, marks) {
+  // Bars on a logarithmic scale, so that a few of something can be seen next to a million.
+  function bars(parent, title, of, entries, marks) {
     const most = Math.max(...entries.map(each => each.count), 1), width = 340, height = 90, each = width / entries.length;
     const label = `${title}: ` + entries.filter(e => e.count > 0).map(e => `${e.label}: ${inWords(e.count)}`).join(', ');
     make('h3', parent, title);
@@ -61,7 +64,7 @@ const FIGURES = (function () {
     draw('line', {x1: 0, x2: width, y1: height, y2: height}, svg);
     for (const [at, text, anchor] of marks)
       draw('text', {x: at * each, y: height + 12, 'text-anchor': anchor || 'middle'}, svg).textContent = text;
-    make('p', parent, `most in one bar: ${inWords(most)}; heights are logarithms`);
+    make('p', parent, `log scale; tallest bar ${inWords(most)} ${of}`);
   }
 
   function shareBars(surface) {
@@ -73,7 +76,7 @@ const FIGURES = (function () {
     entries.push({label: 'at the distance', count: at, colour: css(STATE_COLOURS.reached)});
     const last = above.reduce((end, count, i) => count > 0 ? i + 1 : end, 0);
     above.slice(0, last).forEach((count, i) => entries.push({
-      label: `${100 * (1 + step * i)} % ${i + 1 === above.length ? 'and farther' : `to ${100 * (1 + step * (i + 1))} %`}`,
+      label: `${100 * (1 + step * i)} % ${i + 1 === above.length ? 'or more' : `to ${100 * (1 + step * (i + 1))} %`}`,
       count, colour: css(onRamp(SHARE_RAMP, 1 + step * (i + 0.5))),
     }));
     const marks = [[0, '0', 'start'], [below.length / 2, '50 %'], [below.length + 0.5, '100 %', last ? 'middle' : 'end']];
@@ -82,16 +85,18 @@ const FIGURES = (function () {
   }
 
   function showHistograms(facts) {
-    const parent = byId('histograms');
+    const parent = byId('histograms'), measured = facts.surfaces.some(each => each.histogram);
+    if (!measured) return parent.remove();
     // Of layers, the first and the outermost are measured.
     const shown = facts.layers ? [...new Set([0, facts.surfaces.length - 1])] : facts.surfaces.map((_, i) => i);
     for (const i of shown) {
       const surface = facts.surfaces[i], [entries, marks] = shareBars(surface);
-      bars(parent, `${surface.name}: share of its distance that each ${facts.curves ? 'point' : 'vertex'} has`, entries, marks);
+      const of = facts.curves ? 'points' : 'vertices';
+      bars(parent, `${surface.name}: ${of} by their share of the distance`, of, entries, marks);
     }
     if (!facts.quality) return;
     const {invalid, counts} = facts.quality;
-    bars(parent, 'cells by scaled Jacobian', [
+    bars(parent, 'cells by scaled Jacobian', 'cells', [
       {label: '0 or below', count: invalid, colour: '#a50f15'},
       ...counts.map((count, i) => ({label: `${(i / counts.length).toFixed(2)} to ${((i + 1) / counts.length).toFixed(2)}`,
                                     count, colour: css(onRamp(ERROR_RAMP, 1 - (i + 0.5) / counts.length))})),
@@ -99,7 +104,7 @@ const FIGURES = (function () {
   }
 
   const inCell = value => value === null ? '–' : typeof value === 'number' && !Number.isInteger(value) ? inDigits(value) : String(value);
-  // A table of what is named, and behind it a part that can be opened for each of what has parts.
+  // A table of the values, then a part that can be opened for each value that has parts.
   function addRows(parent, values) {
     const table = make('table', parent), isPlain = value => value === null || typeof value !== 'object';
     for (const [key, value] of Object.entries(values)) {
@@ -119,17 +124,22 @@ const FIGURES = (function () {
     }
   }
 
+  function shownOf(facts, {shown, vertices}) {
+    const {elements, of} = shown, what = facts.curves ? 'segments' : 'triangles';
+    return elements === of ? `${inWords(of)} ${what}, ${inWords(vertices)} vertices, all shown.` :
+        `Shown: ${inWords(elements)} of ${inWords(of)} ${what}. Of vertices that are close together one is drawn, the one that ` +
+        'misses the distance most; its number and distances are its own. All figures are of all vertices.';
+  }
+
   function show(facts, report) {
     byId('command').textContent = facts.command;
     for (const remark of facts.remarks) make('li', byId('remarks'), remark);
-    const {elements, of} = facts.shown, what = facts.curves ? 'segments' : 'triangles';
-    byId('shown').textContent = elements === of ? `${inWords(of)} ${what}, ${inWords(facts.vertices)} vertices, all shown.` :
-        `Shown: ${inWords(elements)} of ${inWords(of)} ${what}. Vertices near each other are drawn as one of them, the one ` +
-        'that is farthest from what was asked; its number and distances are its own. All figures are of all vertices.';
+    const meshes = [facts, ...facts.surfaces].filter(each => each.shown);
+    meshes.forEach((each, i) => make('p', byId('shown'), (meshes.length > 1 ? `${i ? each.name : facts.title}: ` : '') + shownOf(facts, each)));
     showHistograms(facts);
     if (report) addRows(byId('figures'), report);
     else byId('figures').remove();
   }
 
-  return {make, inWords, inDigits, css, onRamp, show, STATE_COLOURS, UNKNOWN, SHARE_RAMP, ERROR_RAMP};
+  return {make, inWords, inDigits, lengthIn, css, onRamp, show, STATE_COLOURS, UNKNOWN, SHARE_RAMP, ERROR_RAMP, LENGTH_RAMP};
 })();

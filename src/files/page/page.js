@@ -6,25 +6,19 @@
   const byId = id => document.getElementById(id);
   const facts = JSON.parse(byId('facts').textContent), report = JSON.parse(byId('report').textContent);
 
-  const {make, inWords, inDigits, css, onRamp, STATE_COLOURS, UNKNOWN, SHARE_RAMP, ERROR_RAMP} = FIGURES;
+  const {make, inWords, inDigits, lengthIn, STATE_COLOURS} = FIGURES;
 
   // In words, what each state means.
   const WHY = {
     reached: 'It is at its distance.',
-    collision: 'The distance grows no further there: the front from the other side was met.',
-    limited: 'Held back: going on would invert, collapse or cross faces.',
+    collision: 'It met the offset that comes from another part of the surface.',
+    limited: 'Held back: farther out, faces would invert, collapse or cross.',
     outside_field: 'Its path left the grid of the distance field.',
     unused: 'No face uses it; it stays where it is.',
-    mitred: 'Where the planes of its faces meet, farther than the distance, so that the faces are at it.',
-    cut: 'On the way to where the planes of its faces meet, as far as the miter limit allows.',
+    mitred: 'It moved farther than the distance, to where the planes of its faces meet, so that these faces are at the distance.',
+    cut: 'The miter limit stopped it on its way to where the planes of its faces meet.',
   };
   const SHORT = ['collision', 'limited', 'outside_field'], FAR = ['mitred', 'cut'];
-
-  // Around the circle of colours, by the golden angle, so that neighbours differ.
-  function groupColour(group) {
-    const hue = group * 137.508 % 360, light = [0.6, 0.45, 0.75][group % 3];
-    return new THREE.Color().setHSL(hue / 360, 0.55, light).getHex();
-  }
 
   async function unpack() {
     const element = byId('arrays'), binary = atob(element.textContent);
@@ -37,111 +31,55 @@
     return arrays;
   }
 
+  // The faces that are shown of the source, which surfaces have as well, or of a surface that has others.
+  function meshOf(arrays, of) {
+    return {vertex: arrays[of + 'vertex'], corners: arrays[of + 'corners'], face: arrays[of + 'face'], edges: arrays[of + 'edges'],
+            group: arrays[of + 'group'] || null};
+  }
+
   function dataOf(arrays) {
+    const source = {positions: arrays['source.positions'], mesh: meshOf(arrays, '')};
     const surfaces = facts.surfaces.map((surface, i) => {
       const of = what => arrays[`surface${i}.${what}`] || null, target = of('target');
       return {
-        name: surface.name, positions: of('positions'), share: of('share'), state: of('state'), achieved: of('achieved'),
-        error: of('error'), target: v => target ? target[v] : surface.target,
-        fault: of('fault'), faultFace: of('fault_face'), faultAt: of('fault_at'),
+        name: surface.name, mesh: of('corners') ? meshOf(arrays, `surface${i}.`) : source.mesh, positions: of('positions'),
+        share: of('share'), state: of('state'), achieved: of('achieved'), error: of('error'),
+        target: v => target ? target[v] : surface.target,
+        fault: of('fault'), faultFace: of('fault_face'), faultAt: of('fault_at'), faultGroup: of('fault_group'),
       };
     });
-    return {
-      curves: facts.curves, sizeOfElement: facts.curves ? 2 : 3, vertex: arrays.vertex, corners: arrays.corners,
-      face: arrays.face, edges: arrays.edges, group: arrays.group || null, source: {positions: arrays['source.positions']},
-      surfaces,
-    };
+    // A mesh alone is shown as a surface is.
+    if (isAlone) surfaces.push(Object.assign({name: facts.title}, source));
+    return {curves: facts.curves, sizeOfElement: facts.curves ? 2 : 3, source, surfaces};
   }
 
   // The view and what goes with it.
 
-  const looks = {source: 'see-through', result: 'solid', colour: 'share', outermost: facts.surfaces.length, cutAxis: -1, cutAt: 0.5};
-  let data, view;
-
-  function errorScale() {
-    let most = 0;
-    for (const {error} of data.surfaces) {
-      if (!error) continue;
-      const sorted = Float32Array.from(error.filter(e => e === e)).sort();
-      if (sorted.length > 0) most = Math.max(most, sorted[Math.floor(0.98 * (sorted.length - 1))]);
-    }
-    return Math.max(most, 0.01);  // one percent: less is as good as none
-  }
-
-  const MODES = {
-    share: {
-      label: 'share of the distance', has: () => true,
-      colours: surface => (element, v) => onRamp(SHARE_RAMP, surface.share[v]),
-      legend: to => ramp(to, SHARE_RAMP, 2, ['0', '50 %', '100 %', '', '200 %']),
-    },
-    state: {
-      label: 'state', has: () => data.surfaces.some(each => each.state),
-      colours: surface => (element, v) => surface.state ? STATE_COLOURS[facts.states[surface.state[v]]] : UNKNOWN,
-      legend: to => stateLegend(to),
-    },
-    error: {
-      label: 'error of faces', has: () => data.surfaces.some(each => each.error),
-      colours: surface => {
-        const scale = errorScale();
-        return element => onRamp(ERROR_RAMP, surface.error ? surface.error[element] / scale : NaN);
-      },
-      legend: to => {
-        const scale = 100 * errorScale();
-        ramp(to, ERROR_RAMP, 1, ['0', `${inDigits(Number((scale / 2).toPrecision(2)))} %`, `${inDigits(Number(scale.toPrecision(2)))} % and more`]);
-        make('div', to, 'of the distance; grey: not known');
-      },
-    },
-    group: {
-      label: 'group', has: () => data.group,
-      colours: () => element => groupColour(data.group[element]),
-      legend: to => entries(to, facts.groups.map((name, i) => [groupColour(i), name])),
-    },
-  };
-
-  function ramp(to, colours, end, marks) {
-    const bar = make('canvas', to, undefined, {class: 'ramp', width: 260, height: 1});
-    const context = bar.getContext('2d');
-    for (let x = 0; x < 260; ++x) {
-      context.fillStyle = css(onRamp(colours, end * x / 259));
-      context.fillRect(x, 0, 1, 1);
-    }
-    const row = make('div', to, undefined, {class: 'marks'});
-    marks.forEach((text, i) => { make('span', row, text).style.left = `${100 * i / (marks.length - 1)}%`; });
-  }
-
-  function entries(to, list) {
-    const box = make('div', to, undefined, {class: 'entries'});
-    for (const [colour, text] of list.slice(0, 60)) {
-      const entry = make('span', box);
-      make('span', entry, '', {class: 'swatch'}).style.background = css(colour);
-      entry.append(text);
-    }
-    if (list.length > 60) make('span', box, `and ${list.length - 60} more`);
-  }
-
-  function stateLegend(to) {
-    const counts = facts.states.map((_, s) => facts.surfaces.reduce((sum, each) => sum + (each.states ? each.states[s] : 0), 0));
-    // All of the layers have one state.
-    const share = facts.layers ? facts.surfaces.length : 1;
-    entries(to, facts.states.map((name, s) => [STATE_COLOURS[name], `${name} ${inWords(counts[s] / share)}`, counts[s]]).filter(e => e[2] > 0));
-  }
+  const isAlone = facts.surfaces.length === 0;
+  const looks = {source: isAlone ? 'hidden' : 'see-through', result: 'solid', up: facts.up, outermost: Infinity, cutAxis: -1, cutAt: 0.5};
+  let data, view, modes;
 
   function paint() {
-    const mode = MODES[looks.colour], legend = byId('legend');
+    const mode = modes[looks.colour], legend = byId('legend');
     data.surfaces.forEach((surface, i) => view.paint(i, mode.colours(surface)));
     legend.replaceChildren();
-    make('div', legend, `${facts.curves ? 'curves' : 'surface'}: ${mode.label}`);
+    if (looks.colour !== 'plain') make('div', legend, mode.title || mode.label);
     mode.legend(legend);
     view.draw();
   }
 
+  const isSurfaceShown = i => looks.result !== 'hidden' && i < looks.outermost && (!looks.only || looks.only[i]);
+
   function update() {
+    byId('transparency').disabled = looks.source !== 'see-through' && looks.result !== 'see-through';
     view.setLook(view.source, looks.source);
     view.surfaces.forEach((surface, i) => {
-      const isShown = looks.result !== 'hidden' && i < looks.outermost && (!looks.only || looks.only[i]);
+      const isShown = isSurfaceShown(i);
       view.setLook(surface, isShown ? looks.result : 'hidden');
       view.showEdges(i, isShown && Boolean(looks.edges));
-      for (const {points, surface: of, box} of marks) if (of === i) points.visible = isShown && box.checked;
+      // Faults are those of the result in its place.
+      for (const {points, surface: of, box, isFault} of marks)
+        if (of === i) points.visible = isShown && box.checked && !(isFault && view.share < 1);
     });
     view.cut(looks.cutAxis, looks.cutAt);
     view.draw();
@@ -150,7 +88,7 @@
   const marks = [];
   // Vertices in these states, as points.
   function addMarks(words, title) {
-    const of = facts.layers ? [data.surfaces.length - 1] : data.surfaces.map((_, i) => i);
+    const all = facts.surfaces.map((_, i) => i), of = facts.layers ? all.slice(-1) : all;
     const count = of.reduce((sum, i) => sum + facts.states.reduce((n, name, s) =>
         n + (words.includes(name) && facts.surfaces[i].states ? facts.surfaces[i].states[s] : 0), 0), 0);
     if (count === 0) return;
@@ -176,9 +114,9 @@
   // In words, what each fault means.
   const WRONG = {
     inverted: 'It faces the wrong way.',
-    collapsed: 'Next to nothing of its area is left.',
-    crowded: 'It is nearer to an obstacle than may be, or goes through the source.',
-    crossing: 'It crosses another face, which it did not before.',
+    collapsed: 'Almost none of its area is left.',
+    crowded: 'It is nearer to an obstacle than the clearance, or passes through the source.',
+    crossing: 'It crosses another face that it does not cross in the source.',
   };
 
   // Faces that something is wrong with, as points in their middles.
@@ -194,7 +132,7 @@
       if (!surface.fault) return;
       const colours = new Uint8Array(3 * surface.fault.length);
       for (let k = 0; k < colours.length; ++k) colours[k] = FAULT_COLOUR >> [16, 8, 0][k % 3] & 255;
-      marks.push({points: view.addPoints(surface.faultAt, colours), surface: i, box});
+      marks.push({points: view.addFaultMarks(surface.faultAt, colours, surface.faultGroup), surface: i, box, isFault: true});
     });
     const first = data.surfaces.find(each => each.fault);
     make('li', byId('remarks'), `Faulty: ${[...first.faultFace.slice(0, 12)].map((f, k) =>
@@ -224,35 +162,51 @@
 
   function addControls() {
     const ways = ['hidden', 'see-through', 'solid'].map(word => [word, word]);
-    const colour = addChoice('colour by', 'colour', Object.entries(MODES).filter(([, mode]) => mode.has()).map(([k, mode]) => [k, mode.label]));
+    const colour = addChoice('colour by', 'colour', Object.entries(modes).map(([name, mode]) => [name, mode.label]));
     colour.addEventListener('change', () => { looks.colour = colour.value; paint(); });
-    const names = {source: 'source', result: facts.layers ? 'layers' : data.surfaces.length > 1 ? 'skins' : 'offset'};
-    for (const which of ['source', 'result']) {
+    const names = {source: 'source', result: isAlone ? 'mesh' : facts.layers ? 'layers' : data.surfaces.length > 1 ? 'skins' : data.surfaces[0].name};
+    for (const which of isAlone ? ['result'] : ['source', 'result']) {
       const select = addChoice(names[which], which, ways);
       select.addEventListener('change', () => { looks[which] = select.value; update(); });
     }
-    if (facts.layers && data.surfaces.length > 1) {
-      const count = data.surfaces.length;
-      addRange('layers on', {id: 'outermost', min: 0, max: count, step: 1, value: count}, (value, range) => {
-        looks.outermost = value;
-        range.setAttribute('aria-valuetext', `${value} of ${count}`);
-      });
-    } else if (data.surfaces.length > 1) {
-      looks.only = data.surfaces.map(() => true);
-      data.surfaces.forEach((surface, i) => addBox(surface.name, true, checked => { looks.only[i] = checked; }));
-    }
-    const axis = addChoice('cut open', 'cutAxis', [[-1, 'not'], [0, 'across x'], [1, 'across y'], [2, 'across z']]);
+    addRange('transparency', {id: 'transparency', min: 0.05, max: 0.95, step: 0.05, value: 0.75}, value => { view.opacity = 1 - value; });
+    addSurfaceControls();
+    const up = addChoice('up', 'up', ['x', 'y', 'z'].map((name, axis) => [axis, name]));
+    up.addEventListener('change', () => view.setUp(Number(up.value)));
+    const axis = addChoice('cut open', 'cutAxis', [[-1, 'no'], [0, 'across x'], [1, 'across y'], [2, 'across z']]);
     axis.addEventListener('change', () => {
       looks.cutAxis = Number(axis.value);
       share.disabled = looks.cutAxis < 0;
       update();
     });
-    const share = addRange('cut off', {id: 'cutAt', min: 0, max: 1, step: 0.005, value: looks.cutAt}, value => { looks.cutAt = value; });
+    const share = addRange('cut at', {id: 'cutAt', min: 0, max: 1, step: 0.005, value: looks.cutAt}, value => { looks.cutAt = value; });
     share.disabled = true;
     if (!facts.curves) addBox('edges', false, checked => { looks.edges = checked; });
     addFaults();
     addMarks(SHORT, 'vertices that fall short');
-    addMarks(FAR, 'mitred and cut vertices');
+    addMarks(FAR, 'vertices with a miter');
+  }
+
+  // Which of several surfaces are shown, and how far along their vertices are.
+  function addSurfaceControls() {
+    const count = data.surfaces.length;
+    if (facts.layers && count > 1)
+      addRange('layers shown', {id: 'outermost', min: 0, max: count, step: 1, value: count}, (value, range) => {
+        looks.outermost = value;
+        range.setAttribute('aria-valuetext', `${value} of ${count}`);
+      });
+    else if (count > 1) {
+      looks.only = data.surfaces.map(() => true);
+      data.surfaces.forEach((surface, i) => addBox(surface.name, true, checked => { looks.only[i] = checked; }));
+    }
+    if (isAlone || data.surfaces.every(each => each.mesh !== data.source.mesh)) return;
+    const inPercent = value => `moved ${Math.round(100 * value)} %`;
+    const range = addRange(inPercent(1), {id: 'along', min: 0, max: 1, step: 0.01, value: 1}, value => {
+      range.setAttribute('aria-valuetext', byId('controls').querySelector('label[for=along]').textContent = inPercent(value));
+      view.setShare(value);
+      if (byId('picked').dataset.x !== undefined) notePlace(byId('picked').dataset);
+    });
+    range.title = 'Moves the vertices straight from the source (0 %) to the result (100 %).';
   }
 
   function addBox(text, checked, onChange) {
@@ -263,24 +217,23 @@
     box.addEventListener('change', () => { onChange(box.checked); update(); });
   }
 
-  // Tells of a vertex, by its place among those that are shown.
+  // Shows what is known of a vertex, given by its place among those that are drawn.
   function tell(surface, v, element) {
-    const list = byId('picked'), number = data.vertex[v], on = data.surfaces[surface];
+    const list = byId('picked'), on = surface < 0 ? data.source : data.surfaces[surface], number = on.mesh.vertex[v];
     list.replaceChildren();
-    list.dataset.vertex = number;
-    list.dataset.surface = surface;
+    Object.assign(list.dataset, {vertex: number, surface, v});
     const row = (name, value) => { make('dt', list, name); make('dd', list, value); };
     row('vertex', String(number));
     row('on', surface < 0 ? 'source' : on.name);
-    const place = view.position(surface, v).toArray().map((x, k) => inDigits(x + facts.centre[k]));
-    row('at', place.join(', '));
-    if (surface >= 0) tellDistances(on, v, row);
+    row('at', [0, 1, 2].map(k => inDigits(on.positions[3 * v + k] + facts.centre[k])).join(', '));
+    if (on.share) tellDistances(on, v, row);
     if (element !== undefined) {
-      row(facts.curves ? 'curve' : 'face', String(data.face[element]));
-      if (on && on.error && on.error[element] === on.error[element]) row('its error', `${inDigits(100 * on.error[element])} % of the distance`);
-      const fault = faultOf(on, data.face[element]);
+      const face = on.mesh.face[element];
+      row(facts.curves ? 'curve' : 'face', String(face));
+      if (on.error && on.error[element] === on.error[element]) row('its error', `${inDigits(100 * on.error[element])} % of the distance`);
+      const fault = faultOf(on, face);
       if (fault) row('its fault', `${fault}: ${WRONG[fault]}`);
-      if (data.group) row('its group', facts.groups[data.group[element]]);
+      if (on.mesh.group) row('its group', facts.groups[on.mesh.group[element]]);
     }
     byId('number').value = number;
     view.setMark(surface, v);
@@ -288,8 +241,8 @@
   }
 
   function tellDistances(surface, v, row) {
-    row('target', inDigits(surface.target(v)));
-    row('achieved', surface.achieved ? inDigits(surface.achieved[v]) : 'not measured at this height');
+    row('target', lengthIn(facts, surface.target(v)));
+    row('achieved', surface.achieved ? lengthIn(facts, surface.achieved[v]) : 'not measured at this height');
     row('share', surface.share[v] === surface.share[v] ? `${inDigits(100 * surface.share[v])} %` : '–');
     if (!surface.state) return;
     const state = facts.states[surface.state[v]];
@@ -303,30 +256,36 @@
     else {
       delete byId('picked').dataset.vertex;
       byId('picked').replaceChildren();
-      make('dt', byId('picked'), 'nothing there');
+      make('dt', byId('picked'), 'Nothing is there.');
     }
+  }
+
+  // The place of a number in an ascending list, or -1.
+  function placeOf(number, list) {
+    let low = 0, high = list.length;
+    while (low < high) {
+      const middle = low + high >> 1;
+      if (list[middle] < number) low = middle + 1;
+      else high = middle;
+    }
+    return list[low] === number ? low : -1;
   }
 
   // Goes to a vertex by its number, on the outermost surface.
   function goTo(number) {
-    const list = byId('picked');
-    let low = 0, high = data.vertex.length;
-    while (low < high) {
-      const middle = low + high >> 1;
-      if (data.vertex[middle] < number) low = middle + 1;
-      else high = middle;
-    }
-    if (data.vertex[low] !== number) {
+    const list = byId('picked'), surface = data.surfaces.length - 1, v = placeOf(number, data.surfaces[surface].mesh.vertex);
+    if (v < 0) {
       list.replaceChildren();
       delete list.dataset.vertex;
-      make('dt', list, number < facts.vertices ? `vertex ${number} is not among those that are shown` : `there is no vertex ${number}`);
+      make('dt', list, number < facts.vertices ? `Vertex ${number} is not drawn.` : `There is no vertex ${number}.`);
       return;
     }
-    const surface = data.surfaces.length - 1;
-    tell(surface, low);
-    const {x, y} = view.place(surface, low);
-    Object.assign(list.dataset, {x, y});
+    tell(surface, v);
+    notePlace(list.dataset);
   }
+
+  // Where on the view the picked vertex is.
+  function notePlace(picked) { Object.assign(picked, view.place(Number(picked.surface), Number(picked.v))); }
 
   // #pick=X,Y and #vertex=N, for links to a place.
   function follow() {
@@ -357,19 +316,26 @@
   FIGURES.show(facts, report);
   try {
     data = dataOf(await unpack());
-    view = new VIEW.View(byId('view'), data);
+    view = new VIEW.View(byId('view'), data, facts.up);
   } catch (error) {
-    message.textContent = `No view: ${error.message}. It takes a browser of 2023 or later, with WebGL. The figures are beside.`;
+    message.textContent = `No view: ${error.message}. It needs a browser of 2023 or later with WebGL. The figures do not.`;
     document.body.dataset.ready = 'without a view';
     return;
   }
+  modes = COLOURS.modes(facts, data);
+  looks.colour = isAlone && modes.group && facts.groups.length > 1 ? 'group' : Object.keys(modes)[0];
   addControls();
+  const showAll = make('button', byId('tools'), 'Show all', {type: 'button', title: 'The whole view, as at first (Home)'});
+  showAll.addEventListener('click', () => view.showAll());
+  PLACES.addWorst(facts, data, view, isSurfaceShown, tell);
+  PLACES.addPicture(facts, view);
+  PLACES.addGroups(facts, data, view, COLOURS.groupColour, update);
   view.resize();
   view.showAll();
   paint();
   update();
   listen();
-  message.textContent = data.face.length === 0 ? 'No face is left to show.' : '';
+  message.textContent = data.source.mesh.face.length === 0 ? 'There is no face to show.' : '';
   follow();
   await view.draw();
   document.body.dataset.ready = Math.round(performance.now());

@@ -23,6 +23,8 @@ VDB_OFFSET_EMBED(page, VDB_OFFSET_PAGE_FOLDER "/page.html");
 VDB_OFFSET_EMBED(style, VDB_OFFSET_PAGE_FOLDER "/page.css");
 VDB_OFFSET_EMBED(figures, VDB_OFFSET_PAGE_FOLDER "/figures.js");
 VDB_OFFSET_EMBED(view, VDB_OFFSET_PAGE_FOLDER "/view.js");
+VDB_OFFSET_EMBED(colours, VDB_OFFSET_PAGE_FOLDER "/colours.js");
+VDB_OFFSET_EMBED(places, VDB_OFFSET_PAGE_FOLDER "/places.js");
 VDB_OFFSET_EMBED(script, VDB_OFFSET_PAGE_FOLDER "/page.js");
 VDB_OFFSET_EMBED(viewer, VDB_OFFSET_THREE);
 VDB_OFFSET_EMBED(controls, VDB_OFFSET_THREE_CONTROLS);
@@ -38,6 +40,8 @@ PageParts page_parts() {
           .style = between(vdb_offset_page_style, vdb_offset_page_end_of_style),
           .figures = between(vdb_offset_page_figures, vdb_offset_page_end_of_figures),
           .view = between(vdb_offset_page_view, vdb_offset_page_end_of_view),
+          .colours = between(vdb_offset_page_colours, vdb_offset_page_end_of_colours),
+          .places = between(vdb_offset_page_places, vdb_offset_page_end_of_places),
           .script = between(vdb_offset_page_script, vdb_offset_page_end_of_script),
           .viewer = between(vdb_offset_page_viewer, vdb_offset_page_end_of_viewer),
           .controls = between(vdb_offset_page_controls, vdb_offset_page_end_of_controls),

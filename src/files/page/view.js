@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn: the source and the surfaces, by three.js. Colours and picking know of vertices; nothing here knows of the
-// page around the canvas.
+// page around the canvas. What is drawn has in userData whose vertices its points are, so that they can be moved, and whether
+// a point is shown where groups are hidden.
 'use strict';
 
 const VIEW = (function () {
   const FIELD_OF_VIEW = 35, TURN = Math.PI / 36, NEARER = 0.9;
-  const MARK_PIXELS = 5, PICKED_PIXELS = 11, LINE_PIXELS = 6;
+  const MARK_PIXELS = 5, PICKED_PIXELS = 11, LINE_PIXELS = 6, FLIGHT_MS = 400;
+  // Where the camera is at first if x, y or z is up.
+  const DIRECTIONS = [[0.6, 0.75, -1], [0.75, 0.6, 1], [0.75, -1, 0.6]];
 
   // Each corner of an element has a point of its own: faces can have a colour then, and need no normals.
   function spread(values, width, corners) {
@@ -30,9 +33,12 @@ const VIEW = (function () {
   }
 
   class View {
-    constructor(canvas, data) {
+    // up: 0 to 2, the axis that is up at first.
+    constructor(canvas, data, up) {
       this.canvas = canvas;
       this.data = data;
+      this.share = 1;  // of their ways that vertices are shown at
+      this.opacity = 0.25;
       this.renderer = new THREE.WebGLRenderer({canvas: canvas, antialias: true});
       this.renderer.localClippingEnabled = true;
       this.scene = new THREE.Scene();
@@ -45,18 +51,25 @@ const VIEW = (function () {
       this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.5));
       this.box = new THREE.Box3();
       this.addObjects();
-      this.placeCamera();
-      this.controls = new THREE.OrbitControls(this.camera, canvas);
-      this.controls.enableKeys = false;  // they would move the page's own focus about, and cannot turn
-      this.controls.addEventListener('change', () => this.draw());
+      this.setUp(up);
       canvas.addEventListener('keydown', event => this.onKey(event));
+    }
+
+    // The controls of three.js take the axis that is up when they are made.
+    setUp(axis) {
+      this.placeCamera(axis);
+      if (this.controls) this.controls.dispose();
+      this.controls = new THREE.OrbitControls(this.camera, this.canvas);
+      this.controls.enableKeys = false;  // they would move the page's own focus about, and cannot turn
+      this.controls.addEventListener('start', () => { this.flight = null; });
+      this.controls.addEventListener('change', () => this.draw());
       this.showAll();
     }
 
     addObjects() {
       const {source, surfaces} = this.data;
-      this.source = this.addSurface(source.positions, {color: 0x8a9099, transparent: true, opacity: 0.25, depthWrite: false});
-      this.surfaces = surfaces.map(each => this.addSurface(each.positions, {vertexColors: THREE.VertexColors}));
+      this.source = this.addSurface(-1, {color: 0x8a9099});
+      this.surfaces = surfaces.map((_, i) => this.addSurface(i, {vertexColors: THREE.VertexColors}));
       for (const each of [source, ...surfaces]) this.box.union(new THREE.Box3().setFromArray(each.positions));
       this.edges = surfaces.map(() => null);
       this.marks = [];
@@ -64,27 +77,72 @@ const VIEW = (function () {
           {color: 0xffd000, size: PICKED_PIXELS, sizeAttenuation: false, depthTest: false, transparent: true});
       this.mark = new THREE.Points(new THREE.BufferGeometry(), material);
       this.mark.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3), 3));
-      this.mark.frustumCulled = false;
+      this.mark.userData = {surface: -1, vertices: [0]};
       this.mark.visible = false;
       this.mark.renderOrder = 2;
       this.scene.add(this.mark);
     }
 
-    addSurface(positions, options) {
-      const {corners, curves} = this.data;
+    of(surface) { return surface < 0 ? this.data.source : this.data.surfaces[surface]; }
+
+    // All that is drawn and can be moved, cut or hidden.
+    objects() { return [this.source, ...this.surfaces, ...this.edges.filter(each => each !== null), ...this.marks]; }
+
+    addSurface(surface, options) {
+      const {curves, sizeOfElement} = this.data, {positions, mesh} = this.of(surface), {corners, group} = mesh;
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(spread(positions, 3, corners), 3));
       if (options.vertexColors) {
         geometry.setAttribute('color', new THREE.BufferAttribute(new Uint8Array(3 * corners.length), 3, true));
       }
       const object = new (curves ? THREE.LineSegments : THREE.Mesh)(geometry, material(curves, options));
+      object.userData = {surface, vertices: corners, isShown: group && (i => this.shown[group[Math.floor(i / sizeOfElement)]])};
       this.scene.add(object);
       return object;
     }
 
+    // Shows vertices a share of their way from the source to where they are in the end: straight, as paths are not kept.
+    setShare(share) {
+      this.share = share;
+      for (const object of [...this.objects(), this.mark]) if (object.userData.vertices) this.placePoints(object);
+    }
+
+    placePoints(object) {
+      const {surface, vertices} = object.userData, out = object.geometry.attributes.position;
+      for (let i = 0; i < vertices.length; ++i)
+        for (let k = 0; k < 3; ++k) out.array[3 * i + k] = this.coordinate(surface, 3 * vertices[i] + k);
+      out.needsUpdate = true;
+      object.geometry.computeBoundingSphere();
+    }
+
+    coordinate(surface, at) {
+      const {source} = this.data, {positions, mesh} = this.of(surface), from = source.positions[at], to = positions[at];
+      return mesh !== source.mesh || this.share === 1 ? to : from + this.share * (to - from);
+    }
+
+    // shown: of each group whether it is drawn.
+    showGroups(shown) {
+      this.shown = shown;
+      const {mesh} = this.data.source, size = this.data.sizeOfElement;
+      this.isVertexShown = new Uint8Array(mesh.vertex.length);
+      for (let i = 0; i < mesh.corners.length; ++i)
+        if (shown[mesh.group[Math.floor(i / size)]]) this.isVertexShown[mesh.corners[i]] = 1;
+      for (const object of this.objects()) this.hidePoints(object);
+    }
+
+    hidePoints({geometry, userData}) {
+      if (!this.shown || !userData.isShown) return;
+      const count = geometry.attributes.position.count;
+      if (!geometry.index) geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(count), 1));
+      let drawn = 0;
+      for (let i = 0; i < count; ++i) if (userData.isShown(i)) geometry.index.array[drawn++] = i;
+      geometry.index.needsUpdate = true;
+      geometry.setDrawRange(0, drawn);
+    }
+
     // colours(element, vertex) returns red, green and blue in one number.
     paint(index, colours) {
-      const {corners, sizeOfElement} = this.data;
+      const {sizeOfElement} = this.data, {corners} = this.data.surfaces[index].mesh;
       const attribute = this.surfaces[index].geometry.attributes.color, bytes = attribute.array;
       for (let i = 0; i < corners.length; ++i) {
         const colour = colours(Math.floor(i / sizeOfElement), corners[i]);
@@ -99,7 +157,7 @@ const VIEW = (function () {
     setLook(object, look) {
       object.visible = look !== 'hidden';
       object.material.transparent = look === 'see-through';
-      object.material.opacity = look === 'see-through' ? 0.25 : 1;
+      object.material.opacity = look === 'see-through' ? this.opacity : 1;
       object.material.depthWrite = look !== 'see-through';
       object.material.needsUpdate = true;
     }
@@ -110,37 +168,53 @@ const VIEW = (function () {
     }
 
     makeEdges(index) {
-      const {corners, edges} = this.data, positions = this.data.surfaces[index].positions;
-      const points = [];
+      const {corners, edges, group} = this.data.surfaces[index].mesh, vertices = [], elements = [];
       for (let e = 0; e < edges.length; ++e)
         for (let k = 0; k < 3; ++k) {
           if (!(edges[e] >> k & 1)) continue;
-          for (const v of [corners[3 * e + k], corners[3 * e + (k + 1) % 3]])
-            points.push(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
+          vertices.push(corners[3 * e + k], corners[3 * e + (k + 1) % 3]);
+          elements.push(e);
         }
+      const material = new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.35});
+      const lines = new THREE.LineSegments(this.pointsAt(vertices), material);
+      lines.userData = {surface: index, vertices, isShown: group && (i => this.shown[group[elements[i >> 1]]])};
+      return this.added(lines);
+    }
+
+    pointsAt(vertices) {
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points), 3));
-      const lines = new THREE.LineSegments(
-          geometry, new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.35}));
-      lines.material.clippingPlanes = this.cutting ? [this.plane] : null;
-      this.scene.add(lines);
-      return lines;
+      return geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * vertices.length), 3));
+    }
+
+    // What is drawn from now on, as all else is: moved, cut, and without groups that are hidden.
+    added(object) {
+      object.material.clippingPlanes = this.cutting ? [this.plane] : null;
+      if (object.userData.vertices) this.placePoints(object);
+      this.hidePoints(object);
+      this.scene.add(object);
+      return object;
     }
 
     // Points at vertices, in one colour each.
-    addMarks(index, vertices, colours) {
-      return this.addPoints(spread(this.data.surfaces[index].positions, 3, vertices), colours);
+    addMarks(surface, vertices, colours) {
+      const isShown = this.of(surface).mesh.group && (i => this.isVertexShown[vertices[i]]);
+      return this.addPoints(this.pointsAt(vertices), colours, {surface, vertices, isShown});
     }
 
-    addPoints(positions, colours) {
+    // Points in the middles of faces, of which the page knows the groups.
+    addFaultMarks(positions, colours, groups) {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+      return this.addPoints(geometry, colours, {isShown: groups && (i => this.shown[groups[i]])});
+    }
+
+    addPoints(geometry, colours, userData) {
       geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3, true));
       const points = new THREE.Points(
           geometry, new THREE.PointsMaterial({vertexColors: THREE.VertexColors, size: MARK_PIXELS, sizeAttenuation: false}));
       points.renderOrder = 1;
-      this.scene.add(points);
-      this.marks.push(points);
+      points.userData = userData;
+      this.marks.push(this.added(points));
       return points;
     }
 
@@ -155,21 +229,21 @@ const VIEW = (function () {
         this.plane.normal.set(0, 0, 0).setComponent(axis, -this.cutSide);
         this.plane.constant = this.cutSide > 0 ? high - share * (high - low) : -low - share * (high - low);
       }
-      const lines = this.edges.filter(each => each !== null);
-      for (const object of [this.source, ...this.surfaces, ...lines, ...this.marks])
-        object.material.clippingPlanes = this.cutting ? [this.plane] : null;
+      for (const object of this.objects()) object.material.clippingPlanes = this.cutting ? [this.plane] : null;
     }
 
     // Curves, and all that is flat, are seen from above.
-    placeCamera() {
+    placeCamera(up) {
       const size = this.box.getSize(new THREE.Vector3());
       const flat = [0, 1, 2].find(k => size.getComponent(k) <= 1e-6 * size.length());
-      this.direction = new THREE.Vector3(0.75, -1, 0.6).normalize();
-      this.camera.up.set(0, 0, 1);
+      this.direction = new THREE.Vector3(...DIRECTIONS[up]).normalize();
+      this.camera.up.set(0, 0, 0).setComponent(up, 1);
       if (flat === undefined) return;
-      this.direction.set(0, 0, 0).setComponent(flat, flat === 1 ? -1 : 1);
-      if (flat === 2) this.camera.up.set(0, 1, 0);
+      this.direction.set(0, 0, 0).setComponent(flat, flat === 1 && up !== 1 ? -1 : 1);
+      if (flat === up) this.camera.up.set(...[[0, 0, 1], [0, 0, -1], [0, 1, 0]][up]);
     }
+
+    diagonal() { return this.box.getSize(new THREE.Vector3()).length(); }
 
     // How far away all corners of the box are in view.
     distanceToFit() {
@@ -186,6 +260,7 @@ const VIEW = (function () {
     }
 
     showAll() {
+      this.flight = null;
       this.box.getCenter(this.controls.target);
       const distance = 1.05 * this.distanceToFit();
       this.camera.position.copy(this.controls.target).addScaledVector(this.direction, distance);
@@ -194,6 +269,42 @@ const VIEW = (function () {
       this.camera.updateProjectionMatrix();
       this.controls.update();
       this.draw();
+    }
+
+    // From how far away this size fills the view.
+    awayFor(size) { return size / 2 / Math.tan(FIELD_OF_VIEW / 2 * Math.PI / 180); }
+
+    // How far one sees from a place on a surface, at most `far`.
+    sightFrom(place, direction, far) {
+      const caster = new THREE.Raycaster(place.clone().addScaledVector(direction, 1e-3 * far), direction, 0, far);
+      const hits = this.hits(caster, this.surfaces.filter(each => each.visible));
+      return hits.length > 0 ? hits[0].distance : far;
+    }
+
+    hits(caster, objects) {
+      return caster.intersectObjects(objects).filter(hit => !this.cutting || this.plane.distanceToPoint(hit.point) >= 0);
+    }
+
+    // Goes to a place and looks at it from a direction and so far away, or at once if `isQuick`.
+    flyTo(place, direction, away, isQuick) {
+      const target = this.controls.target.clone(), position = this.camera.position.clone();
+      const end = place.clone().addScaledVector(direction, away), begin = performance.now(), flight = this.flight = {};
+      const step = () => {
+        if (this.flight !== flight) return;  // the user turns the view, or goes elsewhere
+        const share = isQuick ? 1 : Math.min(1, (performance.now() - begin) / FLIGHT_MS), eased = share * share * (3 - 2 * share);
+        this.controls.target.lerpVectors(target, place, eased);
+        this.camera.position.lerpVectors(position, end, eased);
+        this.controls.update();
+        this.draw();
+        if (share < 1) requestAnimationFrame(step);
+      };
+      step();
+    }
+
+    // Outward at an element of a surface.
+    normal(surface, element) {
+      const {corners} = this.of(surface).mesh, [a, b, c] = [0, 1, 2].map(k => this.position(surface, corners[3 * element + k]));
+      return b.sub(a).cross(c.sub(a)).normalize();
     }
 
     onKey(event) {
@@ -240,6 +351,15 @@ const VIEW = (function () {
       return this.drawn;
     }
 
+    // The view as it is now, on a canvas that keeps it.
+    picture() {
+      this.renderer.render(this.scene, this.camera);
+      const copy = document.createElement('canvas');
+      [copy.width, copy.height] = [this.canvas.width, this.canvas.height];
+      copy.getContext('2d').drawImage(this.canvas, 0, 0);
+      return copy;
+    }
+
     // What stands at a place of the canvas: the vertex nearest to the point that is seen there, or null.
     pick(x, y) {
       const {width, height} = this.canvas.getBoundingClientRect();  // clientHeight is rounded
@@ -250,15 +370,14 @@ const VIEW = (function () {
       caster.linePrecision = 2 * LINE_PIXELS * away * Math.tan(FIELD_OF_VIEW / 2 * Math.PI / 180) / height;
       const seen = this.surfaces.filter(each => each.visible), solid = seen.filter(each => !each.material.transparent);
       if (this.source.visible && (!this.source.material.transparent || seen.length === 0)) solid.push(this.source);
-      const hits = caster.intersectObjects(solid.length > 0 ? solid : seen)
-          .filter(hit => !this.cutting || this.plane.distanceToPoint(hit.point) >= 0);
+      const hits = this.hits(caster, solid.length > 0 ? solid : seen);
       return hits.length > 0 ? this.vertexAt(hits[0]) : null;
     }
 
     vertexAt(hit) {
-      const {corners, sizeOfElement} = this.data;
-      const surface = this.surfaces.indexOf(hit.object);
-      const element = sizeOfElement === 3 ? hit.faceIndex : Math.floor(hit.index / 2);
+      const {sizeOfElement} = this.data, {surface} = hit.object.userData, {corners} = this.of(surface).mesh;
+      // A face's corners stand one behind the other, whether or not others are hidden.
+      const element = Math.floor((sizeOfElement === 3 ? hit.face.a : hit.index) / sizeOfElement);
       let best = null;
       for (let k = 0; k < sizeOfElement; ++k) {
         const vertex = corners[sizeOfElement * element + k];
@@ -268,16 +387,15 @@ const VIEW = (function () {
       return best;
     }
 
-    // Of a vertex, on the source if surface is below 0.
+    // Where a vertex is shown: on the source if surface is below 0.
     position(surface, vertex) {
-      const {positions} = surface < 0 ? this.data.source : this.data.surfaces[surface];
-      return new THREE.Vector3().fromArray(positions, 3 * vertex);
+      return new THREE.Vector3(...[0, 1, 2].map(k => this.coordinate(surface, 3 * vertex + k)));
     }
 
     setMark(surface, vertex) {
       this.mark.visible = true;
-      this.position(surface, vertex).toArray(this.mark.geometry.attributes.position.array);
-      this.mark.geometry.attributes.position.needsUpdate = true;
+      this.mark.userData = {surface, vertices: [vertex]};
+      this.placePoints(this.mark);
       this.draw();
     }
 

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
+#include "request/units.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/view_file.h"
 #include "vdb_offset/report.h"
@@ -49,15 +51,24 @@ void add_faults(const FaultCounts& left, std::vector<std::string>& remarks) {
         "{} faults are left in the result; the page does not show where (vdb_offset check counts them)", left.total()));
 }
 
-io::Page page_of(const Job& job, const std::string& report) {
+std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+io::Page page_of(const Request& request, const Source& source, const std::string& report) {
   io::Page page;
-  page.title = std::filesystem::path(job.request.input).filename().string();
-  page.command = job.request.command;
+  page.title = name_of(request.input);
+  page.command = request.command;
   page.report = report;
-  page.source = job.source.view();
-  page.are_curves = job.curves();
+  page.source = source.view();
+  page.are_curves = source.curves.has_value();
+  const std::optional<double> of_file = source.file     ? source.file->unit_micrometres
+                                        : source.curves ? source.curves->file.unit_micrometres
+                                                        : micrometres_of(request.unit);
+  if (of_file) page.unit = name_of_unit(*of_file);
+  if (source.file && (source.file->format == io::Format::Glb || source.file->format == io::Format::Gltf)) page.up = 1;
   return page;
 }
+
+WallNames groups_of(const Source& source) { return source.file ? io::wall_names(*source.file) : WallNames{}; }
 
 }  // namespace
 
@@ -68,8 +79,8 @@ std::string as_typed(int argc, const char* const* argv) {
 }
 
 void write_page(const Job& job, const Outcome& outcome, const std::string& report) {
-  io::Page page = page_of(job, report);
-  const WallNames groups = job.source.file ? io::wall_names(*job.source.file) : WallNames{};
+  io::Page page = page_of(job.request, job.source, report);
+  const WallNames groups = groups_of(job.source);
   page.groups = &groups;
   if (outcome.inner) page.surfaces.push_back(surface_of("inner skin", *outcome.inner));
   page.surfaces.push_back(surface_of(outcome.inner ? "outer skin" : "offset", outcome.result));
@@ -80,14 +91,29 @@ void write_page(const Job& job, const Outcome& outcome, const std::string& repor
   io::write_page(outcome.to.html, page);
 }
 
-void write_page(const Request& made, PolygonView source, std::span<const Vec3d> positions, const CheckResult& result,
+void write_page(const Request& made, const Source& source) {
+  io::Page page = page_of(made, source, "");
+  const WallNames groups = groups_of(source);
+  page.groups = &groups;
+  io::write_page(made.html, page);
+}
+
+void write_page(const Request& made, const Source& source, PolygonView result, const std::string& remark) {
+  io::Page page = page_of(made, source, "");
+  const WallNames groups = groups_of(source);
+  page.groups = &groups;
+  page.remarks.push_back(remark);
+  io::PageSurface surface;
+  surface.name = name_of(made.output);
+  surface.own = result;
+  page.surfaces.push_back(surface);
+  io::write_page(made.html, page);
+}
+
+void write_page(const Request& made, const Source& source, std::span<const Vec3d> positions, const CheckResult& result,
                 const io::ResultFaces& faces) {
-  io::Page page;
-  page.title = std::filesystem::path(made.output).filename().string();
-  page.command = made.command;
-  page.report = check_json(result, made.input, made.output);
-  page.source = source;
-  page.are_curves = faces.are_curves;
+  io::Page page = page_of(made, source, check_json(result, made.input, made.output));
+  page.title = name_of(made.output);
   page.groups = faces.groups;
   io::PageSurface surface;
   surface.name = "offset";
@@ -104,7 +130,7 @@ void write_page(const Request& made, PolygonView source, std::span<const Vec3d> 
 
 void write_page(const Job& job, const LayersResult& layers, const WallNames& names, std::span<const float> quality,
                 const std::string& report) {
-  io::Page page = page_of(job, report);
+  io::Page page = page_of(job.request, job.source, report);
   page.are_layers = true;
   page.groups = &names;
   page.cell_quality = quality;
@@ -121,9 +147,8 @@ void write_page(const Job& job, const LayersResult& layers, const WallNames& nam
   }
   if (layers.count() > 2)
     page.remarks.emplace_back(
-        "Distances are measured of the first and the outermost surface; of those between them, the share of its "
-        "heights "
-        "that a vertex keeps is shown.");
+        "Distances are measured of the first and the outermost surface; of those between, the page shows what share of "
+        "its heights a vertex keeps.");
   page.remarks.emplace_back("States are those of the outermost surface.");
   add_faults(layers.statistics.limit.left, page.remarks);
   io::write_page(job.request.html, page);

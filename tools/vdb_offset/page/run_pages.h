@@ -24,7 +24,12 @@ void write_page(const Job& job, const LayersResult& layers, const WallNames& nam
                 const std::string& report);
 
 /// Writes the page of an offset that was measured, of a mesh or of curves.
-void write_page(const Request& made, PolygonView source, std::span<const Vec3d> positions, const CheckResult& result,
+void write_page(const Request& made, const Source& source, std::span<const Vec3d> positions, const CheckResult& result,
                 const io::ResultFaces& faces);
+
+/// Writes the page of a mesh, or of curves, alone.
+void write_page(const Request& made, const Source& source);
+/// Writes the page of a mesh and of one with other faces, or of curves. `remark`: why nothing is known of it.
+void write_page(const Request& made, const Source& source, PolygonView result, const std::string& remark);
 
 }  // namespace vdb_offset::tool

@@ -74,6 +74,18 @@ void CommandLine::file(const char* name, const char* about, std::string& path) {
   app_->add_option(name, path, about)->required();
 }
 
+void CommandLine::file_or_none(const char* name, const char* about, std::string& path) {
+  app_->add_option(name, path, about);
+}
+
+std::optional<std::string> CommandLine::given_besides(std::span<const char* const> known) const {
+  for (const CLI::Option* const option : app_->get_options())
+    if (option->count() > 0 && !option->get_positional() &&
+        std::find(known.begin(), known.end(), "--" + option->get_lnames().front()) == known.end())
+      return "--" + option->get_lnames().front();
+  return std::nullopt;
+}
+
 void CommandLine::option(const char* names, const char* type, const char* about, Take take) {
   Value& value = values_.emplace_back();
   value.take = std::move(take);

@@ -70,6 +70,8 @@ class CommandLine {
   void hide_what_follows() { hidden_ = true; }
   /// A file that the command cannot do without, by its position.
   void file(const char* name, const char* about, std::string& path);
+  /// One that it can do without; then `path` stays empty.
+  void file_or_none(const char* name, const char* about, std::string& path);
   /// An option with a value, given at most once. `type` stands for the value in --help.
   void option(const char* names, const char* type, const char* about, Take take);
   void option(const char* names, const char* type, const char* about, std::string& text);
@@ -96,6 +98,8 @@ class CommandLine {
   /// Whether an option was given, by its long name.
   bool has(const char* option) const;
   GivenNames given() const;
+  /// An option that was given, by its long name, and is not among these; none if there is none.
+  std::optional<std::string> given_besides(std::span<const char* const> known) const;
   /// The file of --config; empty if none was given.
   const std::string& config() const { return config_; }
   /// The hidden options that were given, those with several values once for each.

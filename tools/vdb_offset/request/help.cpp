@@ -37,6 +37,7 @@ Examples:
   vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
+  vdb_offset view bunny.obj bigger.obj                  look at it in a browser (vdb_offset view --help)
   vdb_offset batch models bigger --distance 1%          a folder of models (vdb_offset batch --help)
 
 Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
@@ -55,6 +56,7 @@ Examples:
   vdb_offset vase.stl shell.stl -d -2 --shell            a closed solid, 2 units thick
   vdb_offset scan.obj clean.obj -d 1% --mode iso         a clean surface of its own
   vdb_offset check bunny.obj bigger.obj                  measure an offset (vdb_offset check --help)
+  vdb_offset view bunny.obj bigger.obj                   look at it (vdb_offset view --help)
   vdb_offset batch models bigger -d 1%                   a folder of models (vdb_offset batch --help))";
 
 std::span<const HelpTopic> help_topics() {
@@ -70,9 +72,7 @@ std::span<const HelpTopic> help_topics() {
       {"solids",
        "Solids and iso-surfaces",
        {"shell", "inner", "mode", "adaptivity", "inside", "keep-specks", "transport"}},
-      {"layers",
-       "Layers of cells",
-       {"layers", "first-height", "total-thickness", "growth", "heights", "structured"}},
+      {"layers", "Layers of cells", {"layers", "first-height", "total-thickness", "growth", "heights", "structured"}},
       {"inputs",
        "Curves, CAD models and level sets",
        {"close", "flatten", "deflection", "angle", "cad-seconds", "fit-tolerance", "faceted", "grid", "isovalue"}},

@@ -25,6 +25,12 @@ std::optional<double> micrometres_of(const std::string& unit) {
   return std::nullopt;
 }
 
+std::string name_of_unit(double micrometres) {
+  for (const Unit& each : kUnitsOfLength)
+    if (each.micrometres == micrometres) return std::string(each.name);
+  return fmt::format("x {:.6g} mm", micrometres / *micrometres_of("mm"));
+}
+
 std::string in_file_units(const std::string& option, const std::string& text,
                           const std::function<std::optional<double>()>& file_unit) {
   // The longest name counts: 0.2mm is no number of metres with an m behind it.
