@@ -317,7 +317,7 @@ void declare_run(CommandLine& line, Draft& draft) {
 void require_no_command(int argc, const char* const* argv) {
   std::error_code unknown;
   if (argc < 2 || std::filesystem::exists(argv[1], unknown)) return;
-  for (const char* const command : {"check", "batch"})
+  for (const char* const command : {"check", "view", "batch"})
     require(edits_between(argv[1], command) > kMostEdits,
             fmt::format("{}: no such file; did you mean vdb_offset {}?", argv[1], command));
 }
