@@ -203,6 +203,17 @@ class RefinedRun {
     }
   }
 
+  /// Small triangles that cross others in the source: large ones have much beside what crosses.
+  std::vector<std::uint32_t> small_crossing_triangles() const {
+    std::vector<std::uint32_t> small = crossing_;
+    std::erase_if(small, [&](std::uint32_t t) {
+      const auto& [a, b, c] = surface().triangles[t];
+      const Vec3d &p = surface().vertices[a], &q = surface().vertices[b], &r = surface().vertices[c];
+      return std::max({(q - p).length(), (r - q).length(), (p - r).length()}) > options_.distance.scale();
+    });
+    return small;
+  }
+
   /// Splits the faces, in stages, and makes the offset of what comes of that.
   void refine(const Distances& asked, const OffsetResult& coarse) {
     std::optional<StageTimer> timer(std::in_place, seconds_, Stage::Refine);
@@ -214,7 +225,7 @@ class RefinedRun {
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
                     {prepared_.corners(), most_faces(), mesh_.face_count(), tolerance_.precision, edges_left_out(),
-                     crossing_});
+                     small_crossing_triangles()});
     Progress progress(options_.progress, Stage::Refine, kProgress);
     std::size_t told = 0;
     const auto tell = [&](double share) {
