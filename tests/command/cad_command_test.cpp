@@ -19,19 +19,19 @@ TEST_CASE("command: of a CAD model that is written, no faces of a mesh are told"
   };
   const std::string model = told("out.step -d 1mm");
   CHECK_THAT(model, Catch::StartsWith("out.step: as a mesh, ") && Catch::Contains("out.step: a valid solid: 13 faces"));
-  CHECK_THAT(model, !Catch::Contains("off on average") && !Catch::Contains("faces are off"));
-  CHECK_THAT(told("out.obj -d 1mm"), !Catch::Contains("as a mesh") && Catch::Contains("off on average") &&
-                                         Catch::Contains("faces are off mostly beside sharp corners"));
+  CHECK_THAT(model, !Catch::Contains("% off") && !Catch::Contains("error is"));
+  CHECK_THAT(told("out.obj -d 1mm --corners round"), !Catch::Contains("as a mesh") && Catch::Contains(" % off)") &&
+                                                         Catch::Contains("the faces' error is at sharp corners"));
   // Round corners leave no vertex of this model on a single face's offset.
-  CHECK_THAT(model, !Catch::Contains("from the faces of the CAD model"));
-  CHECK_THAT(told("out.step -d 1mm --corners miter"), Catch::Contains("\nfrom the faces of the CAD model, "));
+  CHECK_THAT(told("out.step -d 1mm -v --corners round"), !Catch::Contains("from the faces of the CAD model"));
+  CHECK_THAT(told("out.step -d 1mm -v"), Catch::Contains("\nnote: measured from the faces of the CAD model, "));
 }
 
 TEST_CASE("command: beside what stays, a CAD model's vertices are measured from what moves", "[command][cad]") {
   const ShellCommand shell;
   // The bottom, which ends in a fillet, and an end: the rim goes up the fillet, and has corners in which both move.
-  const Run run =
-      shell(test::scenes_path() + "/bracket.step higher.obj -d -0.2 --only face=7 --only face=8 --report higher.json");
+  const Run run = shell(test::scenes_path() +
+                        "/bracket.step higher.obj -d -0.2 --only face=7 --only face=8 -v --report higher.json");
   CHECK(run.code == 0);
   CHECK_THAT(run.out, Catch::Contains("from the faces of the CAD model, "));
   const auto facts = nlohmann::json::parse(shell.slurp(shell.file("higher.json")))["cad_faces"];

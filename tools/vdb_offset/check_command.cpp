@@ -246,7 +246,12 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
              "1 %\n",
              curves ? "along       " : "in faces    ", 100 * result.faces.mean, 100 * result.faces.quantile_99,
              100 * result.faces.worst, 100 * result.faces.at_distance, curves ? "length" : "area");
-  if (result.certified) fmt::print(out, "proven      {}\n", certified_in_words(*result.certified));
+  if (result.certified) {
+    fmt::print(out, "proven      {}\n", certified_in_words(*result.certified));
+    Remarks remarks;
+    add_certified(*result.certified, 0, remarks);
+    remarks.print(out, true);
+  }
   fmt::print(out, "{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
              result.faults.collapsed,
              result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");

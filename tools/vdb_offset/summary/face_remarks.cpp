@@ -46,12 +46,12 @@ std::string corners_in_words(const Job& job, const OffsetStatistics& statistics)
   if (miters.cut > 0) which.emplace_back("whose miters are cut");
   if (miters.excess > kAtDistance) which.emplace_back("where more planes meet than one point can be on");
   if (any_branches) which.emplace_back(branches);
-  return fmt::format(
-      "is at sharp corners {}{}", which.empty() ? "without a miter" : fmt::to_string(fmt::join(which, ", or ")),
-      miters.cut > 0                                                               ? ". Use a larger --miter-limit"
-      : job.request.layers ? ""
-      : may_be_split(job, statistics) ? ". To split the faces there: --tolerance 1%"
-                                      : "");
+  return fmt::format("is at sharp corners {}{}",
+                     which.empty() ? "without a miter" : fmt::to_string(fmt::join(which, ", or ")),
+                     miters.cut > 0                  ? ". Use a larger --miter-limit"
+                     : job.request.layers            ? ""
+                     : may_be_split(job, statistics) ? ". To split the faces there: --tolerance 1%"
+                                                     : "");
 }
 
 /// How much is too far away at corners of many planes, and what helps.
@@ -100,10 +100,11 @@ void add_certified(const CertifiedFaces& certified, std::size_t faces, Remarks& 
   if (certified.source_faces > 0)
     remarks.add(Gravity::Detail, fmt::format("{} faces were split into {}", certified.source_faces, faces));
   if (certified.certified < certified.there)
-    remarks.add(Gravity::Off,
-                fmt::format("the vertices of {} % of the area reached the distance; what of it is not certified is up to "
-                            "{:.3g} % off",
-                            area_percent(certified.there, 2), 100 * certified.worst_left));
+    remarks.add(
+        Gravity::Off,
+        fmt::format("the vertices of {} % of the area reached the distance; what of it is not certified is up to "
+                    "{:.3g} % off",
+                    area_percent(certified.there, 2), 100 * certified.worst_left));
   // The area is that of the source, and what has little there may have much in the offset.
   if (certified.worst > certified.worst_left)
     remarks.add(Gravity::Detail, fmt::format("the worst of all faces is up to {:.3g} % off", 100 * certified.worst));
@@ -149,8 +150,8 @@ void add_faces(const Job& job, const OffsetStatistics& statistics, Remarks& rema
   std::erase_if(causes, [](const auto& cause) { return cause.first < kLeastCause; });
   std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   for (const auto& [share, text] : causes)
-    remarks.add(Gravity::Off, fmt::format("{:.0f} % of the {}' error {}", 100 * share, curves ? "segments" : "faces",
-                                          text));
+    remarks.add(Gravity::Off,
+                fmt::format("{:.0f} % of the {}' error {}", 100 * share, curves ? "segments" : "faces", text));
 }
 
 bool are_within(const FaceError& faces, double bound, const std::string& offset) {

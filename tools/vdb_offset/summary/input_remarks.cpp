@@ -28,11 +28,12 @@ std::string text_of(const SymmetryPlane& plane) {
 
 void add_slivers(const MeshFacts& facts, Remarks& remarks) {
   if (facts.sliver_edges > 0)
-    remarks.add(Gravity::Off,
-                fmt::format("{} edges are no longer than {:.2g}, where the median is {:.2g}; such slivers hold back the "
-                            "vertices around them. To close them: --weld {:g}",
-                            facts.sliver_edges, facts.longest_sliver, facts.median_edge,
-                            MeshFacts::tolerance_above(facts.longest_sliver)));
+    remarks.add(
+        Gravity::Off,
+        fmt::format("{} edges are no longer than {:.2g}, where the median is {:.2g}; such slivers hold back the "
+                    "vertices around them. To close them: --weld {:g}",
+                    facts.sliver_edges, facts.longest_sliver, facts.median_edge,
+                    MeshFacts::tolerance_above(facts.longest_sliver)));
 }
 
 /// The plane as --symmetry takes it.
@@ -46,15 +47,14 @@ std::string as_option(const SymmetryPlane& plane) {
 /// expect from the input.
 void add_borders(const BorderFacts& borders, Remarks& remarks) {
   if (borders.planes.size() > borders.named_planes)
-    remarks.add(Gravity::Detail,
-                fmt::format("borders stay in the plane they lie in: {} (--symmetry none: do not)",
-                            planes_in_words(std::span(borders.planes).subspan(borders.named_planes))));
+    remarks.add(Gravity::Detail, fmt::format("borders stay in the plane they lie in: {} (--symmetry none: do not)",
+                                             planes_in_words(std::span(borders.planes).subspan(borders.named_planes))));
   if (borders.strayed_vertices > 0)
-    remarks.add(Gravity::Input,
-                fmt::format("{} of {} boundary vertices moved out of the plane perpendicular to the boundary (by up to "
-                            "{:.3g} degrees)",
-                            borders.strayed_vertices, borders.across_vertices + borders.held_vertices,
-                            borders.worst_angle));
+    remarks.add(
+        Gravity::Input,
+        fmt::format("{} of {} boundary vertices moved out of the plane perpendicular to the boundary (by up to "
+                    "{:.3g} degrees)",
+                    borders.strayed_vertices, borders.across_vertices + borders.held_vertices, borders.worst_angle));
   if (borders.beyond > 0)
     remarks.add(Gravity::Off, fmt::format("{} vertices crossed a plane that borders stay in, and the input lies on one "
                                           "side of",
@@ -157,8 +157,9 @@ void add_orientation(const MeshFacts& facts, Orient orient, Remarks& remarks) {
           ? "the only closed piece is"
           : fmt::format("{} of {} closed pieces are", facts.inside_out_components, facts.closed_components);
   if (facts.inside_out_components > 0 && orient == Orient::Keep)
-    remarks.add(Gravity::Wrong, pieces + " inside out: positive distances shrink it. To enlarge it: --orient "
-                                         "fix-direction-only");
+    remarks.add(Gravity::Wrong, pieces +
+                                    " inside out: positive distances shrink it. To enlarge it: --orient "
+                                    "fix-direction-only");
   else if (facts.inside_out_components > 0)
     remarks.add(Gravity::Detail, pieces + " inside out: treated as flipped, its faces stay as they are");
   if (facts.enclosed_components > 0)
@@ -205,14 +206,16 @@ std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
   if (job.curves()) open = open_curves(job.source.view());
   std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
   if (!open.empty())
-    hints.push_back(fmt::format("{} open curve{} with ends that nearly meet ({:.6g} apart, length {:.6g}). To join the "
-                                "ends: --close",
-                                open.size(), plural(open.size()), open.front().gap, open.front().length));
+    hints.push_back(
+        fmt::format("{} open curve{} with ends that nearly meet ({:.6g} apart, length {:.6g}). To join the "
+                    "ends: --close",
+                    open.size(), plural(open.size()), open.front().gap, open.front().length));
   if (room.suggests_other())
-    hints.push_back(fmt::format("only {:.0f} % of the {} has room on this side, {:.0f} % on the other. If {} the wrong "
-                                "way: {}",
-                                100 * room.here, job.curves() ? "curves" : "surface", 100 * room.there,
-                                job.curves() ? "curves run" : "faces point", option_for_other_side(job)));
+    hints.push_back(
+        fmt::format("only {:.0f} % of the {} has room on this side, {:.0f} % on the other. If {} the wrong "
+                    "way: {}",
+                    100 * room.here, job.curves() ? "curves" : "surface", 100 * room.there,
+                    job.curves() ? "curves run" : "faces point", option_for_other_side(job)));
   return hints;
 }
 

@@ -17,8 +17,7 @@ void Remarks::print(std::FILE* out, bool all) const {
   std::size_t left = 0;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     const bool is_detail = sorted[i].gravity == Gravity::Detail;
-    if (all || (i < kMost && !is_detail))
-      fmt::print(out, "{}{}\n", is_detail ? "note: " : "warning: ", sorted[i].text);
+    if (all || (i < kMost && !is_detail)) fmt::print(out, "{}{}\n", is_detail ? "note: " : "warning: ", sorted[i].text);
     else if (!is_detail) ++left;
   }
   if (left > 0) fmt::print(out, "{} more warning{} with --verbose\n", left, plural(left));

@@ -82,9 +82,9 @@ void add_obstacles(const ObstacleFacts& obstacles, double clearance, Remarks& re
   const std::string gap =
       fmt::format("gap to obstacles {:.6g}, {:.6g} at the start", obstacles.gap, obstacles.starting_gap);
   if (obstacles.near > 0)
-    remarks.add(Gravity::Wrong, fmt::format("{}: {} triangles {} one", gap, obstacles.near,
-                                            clearance > 0 ? fmt::format("are nearer than {:.6g} to", clearance)
-                                                          : "touch"));
+    remarks.add(Gravity::Wrong,
+                fmt::format("{}: {} triangles {} one", gap, obstacles.near,
+                            clearance > 0 ? fmt::format("are nearer than {:.6g} to", clearance) : "touch"));
   else remarks.add(Gravity::Detail, gap);
   if (obstacles.touching + obstacles.crossing > 0)
     remarks.add(Gravity::Input, fmt::format("already in the input {} pairs of triangles of it and of obstacles touch, "
@@ -106,13 +106,15 @@ std::string fit_in_words(const FitFacts& fit) {
   std::string text = fmt::format("gap {:.9g}, {:.6g} at the start; {} vertices gave way, by {:.6g} at most", fit.gap,
                                  fit.starting_gap, fit.moved, fit.deepest);
   if (fit.near > 0)
-    text += fmt::format("; {} of {} triangles are still nearer than {:.6g}", fit.near, fit.near_at_start, fit.clearance);
+    text +=
+        fmt::format("; {} of {} triangles are still nearer than {:.6g}", fit.near, fit.near_at_start, fit.clearance);
   return text;
 }
 
 void add_fit(const FitFacts& fit, Remarks& remarks) {
   if (!fit.is_signed)
-    remarks.add(Gravity::Input, "the mesh to fit is not closed or inconsistently oriented: both sides of it keep clear");
+    remarks.add(Gravity::Input,
+                "the mesh to fit is not closed or inconsistently oriented: both sides of it keep clear");
   if (fit.enclosed > 0)
     remarks.add(Gravity::Wrong, fmt::format("{} pieces of the mesh to fit lie inside the result: nothing can give way "
                                             "to them",
@@ -122,8 +124,8 @@ void add_fit(const FitFacts& fit, Remarks& remarks) {
 /// How many vertices reached the distance, which `asked` names, and what became of the others.
 std::string vertices_in_words(const OffsetResult& result, const AchievedSummary& achieved, const std::string& asked,
                               bool curves) {
-  std::string text = fmt::format("{} % of {} {} reached {}", area_percent(achieved.share_reached, 3),
-                                 achieved.vertices, curves ? "points" : "vertices", asked);
+  std::string text = fmt::format("{} % of {} {} reached {}", area_percent(achieved.share_reached, 3), achieved.vertices,
+                                 curves ? "points" : "vertices", asked);
   const auto add = [&](VertexState state, const char* words) {
     if (const std::size_t count = result.statistics.vertices_by_state[static_cast<std::size_t>(state)]; count > 0)
       text += fmt::format(", {} {}", count, words);
@@ -184,9 +186,10 @@ void add_shell(const ShellFacts& shell, Remarks& remarks) {
     remarks.add(Gravity::Off, fmt::format("{} of {} vertices where sheets meet are held back", shell.short_junctions,
                                           shell.junction_vertices));
   if (shell.source_crossings + shell.crossings_near_source > 0)
-    remarks.add(Gravity::Input,
-                fmt::format("the input intersects itself at {} triangle pairs (not repaired); the shell has {} near them",
-                            shell.source_crossings, shell.crossings_near_source));
+    remarks.add(
+        Gravity::Input,
+        fmt::format("the input intersects itself at {} triangle pairs (not repaired); the shell has {} near them",
+                    shell.source_crossings, shell.crossings_near_source));
   if (shell.rim_quads + shell.rim_triangles + shell.junction_vertices > 0)
     remarks.add(Gravity::Detail, fmt::format("rim of {} quads and {} triangles, {} vertices where sheets meet",
                                              shell.rim_quads, shell.rim_triangles, shell.junction_vertices));
@@ -199,9 +202,10 @@ void add_solids(const IsoStatistics& found, Remarks& remarks) {
     remarks.add(Gravity::Wrong,
                 "the input is not closed or inconsistently oriented: the surface goes around it, on all sides");
   else if (solid.open_parts > 0)
-    remarks.add(Gravity::Wrong, fmt::format("{} of {} parts of the input are open: the surface goes around them, on all "
-                                            "sides",
-                                            solid.open_parts, solid.parts));
+    remarks.add(Gravity::Wrong,
+                fmt::format("{} of {} parts of the input are open: the surface goes around them, on all "
+                            "sides",
+                            solid.open_parts, solid.parts));
   if (solid.holes > 0)
     remarks.add(Gravity::Input, fmt::format("{} hole{} of the input ({:.2g} % of its area) filled, so that it has an "
                                             "inside (--inside never: treat it as open)",
@@ -288,8 +292,7 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
   fmt::print(out, " ({:.2f} s)\n", total_seconds);
   if (made.cad) print_cad(out, outcome.to.mesh, *made.cad);
   Remarks remarks;
-  if (const auto obstacles = obstacles_of(statistics, made))
-    add_obstacles(*obstacles, job.options.clearance, remarks);
+  if (const auto obstacles = obstacles_of(statistics, made)) add_obstacles(*obstacles, job.options.clearance, remarks);
   if (statistics.fit) add_fit(*statistics.fit, remarks);
   if (made.shell) add_shell(*made.shell, remarks);
   if (statistics.certified) add_certified(*statistics.certified, faces_in(statistics.facts), remarks);
@@ -349,8 +352,7 @@ void print_iso_summary(const Job& job, const std::string& path, double distance,
   if (left.needles > 0) remarks.add(Gravity::Off, fmt::format("{} triangles have no area", left.needles));
   if (found.dropped_specks > 0)
     remarks.add(Gravity::Input, fmt::format("{} speck{} smaller than a voxel of {:.6g} dropped (--keep-specks: do not)",
-                                            found.dropped_specks, plural(found.dropped_specks),
-                                            found.plan.voxel_size));
+                                            found.dropped_specks, plural(found.dropped_specks), found.plan.voxel_size));
   remarks.add(Gravity::Detail, fmt::format("vertices are off the distance by {:.2g} at most", found.worst_error));
   add_solids(found, remarks);
   add_orientation(found.source, job.options.orient, remarks);
@@ -368,8 +370,9 @@ void print_layers_summary(const Job& job, const LayersResult& result, const Laye
     fmt::print(out, "{}{}", summary(report),
                layers_faces_in_words(statistics.faces, result.layer_statistics.first_faces, job.curves()));
   }
-  fmt::print(out, "{}: {} layers full on {} % of the {}, {:.4g} of {:.4g} thick on average; {} cells, least scaled "
-                  "Jacobian {:.3g} ({:.2f} s)\n",
+  fmt::print(out,
+             "{}: {} layers full on {} % of the {}, {:.4g} of {:.4g} thick on average; {} cells, least scaled "
+             "Jacobian {:.3g} ({:.2f} s)\n",
              job.request.output, report.layers, area_percent(all.coverage, 1), report.plane ? "length" : "area",
              all.reached.mean, all.asked.mean, all.cells, all.scaled_jacobian.least, total_seconds);
   Remarks remarks;
@@ -377,9 +380,10 @@ void print_layers_summary(const Job& job, const LayersResult& result, const Laye
     remarks.add(Gravity::Wrong, fmt::format("{} cells of the block are collapsed or inverted, as where layers end",
                                             report.inverted_block_cells));
   if (report.unpaired_sides > 0)
-    remarks.add(Gravity::Input, fmt::format("{} sides on edges of three faces, or of two of opposite orientation, are on "
-                                            "the boundary",
-                                            report.unpaired_sides));
+    remarks.add(Gravity::Input,
+                fmt::format("{} sides on edges of three faces, or of two of opposite orientation, are on "
+                            "the boundary",
+                            report.unpaired_sides));
   if (statistics.obstacles) add_obstacles(*statistics.obstacles, job.options.clearance, remarks);
   add_faces(job, statistics, remarks);
   add_layers_corners(job, statistics.miters, remarks);
