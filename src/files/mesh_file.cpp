@@ -93,13 +93,24 @@ Target make_target(const std::string& path, const WriteOptions& options, const M
 }  // namespace
 
 Target target_of(const std::string& path, const MeshFile& source, const WriteOptions& options, Faces faces) {
-  // A document whose faces are others becomes a new file.
+  // A document whose faces are others may become a new file.
   const bool keeps_rows =
-      require_written_format(path, options.format) == source.format && (faces == Faces::Same || has_rows(source));
+      require_written_format(path, options.format) == source.format &&
+      (faces == Faces::Same || has_rows(source) || (faces == Faces::Shell && source.document->takes_faces()));
   return make_target(path, options, keeps_rows ? &source : nullptr);
 }
 
 Target target_of(const std::string& path, const WriteOptions& options) { return make_target(path, options, nullptr); }
+
+void write_document(const std::string& path, const MeshFile& source, const WrittenDocument& made) {
+  OutputFiles together;
+  for (const WrittenDocument::Beside& beside : made.beside) {
+    together.add_folders(std::filesystem::path(beside.path).parent_path());
+    write_file(beside.path, beside.bytes);
+  }
+  write_pieces_of(source.path, source.bytes, path, made.file);
+  together.commit();
+}
 
 WriteResult write_mesh(const Target& target, const MeshFile& source, std::span<const Vec3d> positions) {
   const auto& [path, format, how_normals, kept] = target;
@@ -115,13 +126,7 @@ WriteResult write_mesh(const Target& target, const MeshFile& source, std::span<c
   } else {
     made.file = convert(source, format, positions, precision, how_normals, result);
   }
-  OutputFiles together;
-  for (const WrittenDocument::Beside& beside : made.beside) {
-    together.add_folders(std::filesystem::path(beside.path).parent_path());
-    write_file(beside.path, beside.bytes);
-  }
-  write_pieces_of(source.path, source.bytes, path, made.file);
-  together.commit();
+  write_document(path, source, made);
   return result;
 }
 

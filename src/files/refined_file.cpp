@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-#include "derived/refine_writers.h"
+#include "derived/derived_mesh.h"
 #include "document/convert.h"
 #include "document/rows.h"
 #include "ground/system/memory.h"
@@ -71,11 +71,12 @@ bool splits_nothing(const Polygons& source, const Refinement& refinement) {
 }
 
 MeshFile parse_refined(const MeshFile& source, const Refinement& refinement, std::vector<std::string>& lost) {
-  const auto content = std::make_shared<const RefinedContent>(RefinedContent{source, refinement});
   // A face takes about as many bytes as before, and a text grows by doubling.
   const std::size_t of_face = source.text().size() / source.polygons.face_count() + 1;
   require_memory(2 * of_face * refinement.polygons.face_count(), source.path);
-  std::string bytes = join(with_line_ends_of(source, rows_of(source).refined(content, lost)));
+  WrittenDocument made = derive(std::make_shared<const DerivedMesh>(source, refinement), source.path);
+  std::string bytes = join(made.file);
+  lost.insert(lost.end(), made.lost.begin(), made.lost.end());
   source.bytes.require_unchanged(source.path);
   return parse_mesh(source.path, source.format, std::move(bytes));
 }
@@ -113,7 +114,7 @@ RefinedFile refine_file(const MeshFile& source, const Refinement& refinement) {
     refined.file = parse_refined(parse_mesh(source.path, Format::Obj, std::move(bytes)), refinement, refined.lost);
     refined.file.unit_micrometres = source.unit_micrometres;
     source.bytes.require_unchanged(source.path);
-  } else if (!rows_of(source).has_face_rows()) {
+  } else if (!rows_of(source).takes_faces()) {
     std::string bytes = rows_of(source).with_face_rows(source, refined.lost);
     refined.file = parse_refined(parse_mesh(source.path, source.format, std::move(bytes)), refinement, refined.lost);
     source.bytes.require_unchanged(source.path);

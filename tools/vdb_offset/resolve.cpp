@@ -127,9 +127,8 @@ std::optional<io::Target> target_of(const Job& job) {
     return std::nullopt;
   const io::WriteOptions writing = write_options(request, request.output);
   if (request.iso || !job.source.file) return io::target_of(request.output, writing);
-  const bool has_other_faces = job.shell || request.tolerance;
-  return io::target_of(request.output, *job.source.file, writing,
-                       has_other_faces ? io::Faces::Others : io::Faces::Same);
+  const io::Faces faces = job.shell ? io::Faces::Shell : request.tolerance ? io::Faces::Pieces : io::Faces::Same;
+  return io::target_of(request.output, *job.source.file, writing, faces);
 }
 
 // Bytes for each byte of a file: its text, what is noted of it to write it again, and the text written; and for that of
@@ -187,7 +186,7 @@ Precision precision_of_refined(const Job& job) {
   const io::MeshFile& file = *job.source.file;
   // A document whose faces are split becomes a file that keeps all digits (io/derived_file.h).
   const bool is_double = !io::has_rows(file) || file.precision.kind == Precision::Kind::Double;
-  if (is_double && !path.empty()) return io::target_of(path, file, all_digits, io::Faces::Others).precision;
+  if (is_double && !path.empty()) return io::target_of(path, file, all_digits, io::Faces::Pieces).precision;
   return io::has_rows(file) ? file.precision : Precision{};
 }
 

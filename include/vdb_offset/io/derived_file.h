@@ -31,7 +31,7 @@ namespace vdb_offset::io {
 VDB_OFFSET_API WriteResult write_shell(const Target& target, const MeshFile& source, const Shell& shell);
 inline WriteResult write_shell(const std::string& path, const MeshFile& source, const Shell& shell,
                                const WriteOptions& options = {}) {
-  return write_shell(target_of(path, source, options, Faces::Others), source, shell);
+  return write_shell(target_of(path, source, options, Faces::Shell), source, shell);
 }
 
 /// Writes a shell of plain polygons: positions, faces and, in OBJ and PLY, the parts. \throw as write_mesh()

@@ -118,8 +118,8 @@ struct WriteResult {
   std::size_t disagreeing_normals = 0;  ///< OBJ normals shared by vertices with different ones now; they get the mean.
 };
 
-/// Whether a file that is written has the faces of its source, or others (a shell of it, faces in pieces).
-enum class Faces : bool { Same, Others };
+/// Whether a file that is written has the faces of its source, or others.
+enum class Faces { Same, Shell, Pieces };
 
 /// A mesh file that is to be written. It is decided once, by target_of(): writers keep to it, and what is offset for it
 /// is judged on what it keeps of coordinates (OffsetOptions::precision).

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "derived/shell_writers.h"
+#include "derived/derived_mesh.h"
 #include "document/convert.h"
 #include "ground/system/parallel.h"
 

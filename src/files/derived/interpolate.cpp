@@ -90,8 +90,8 @@ void ByteColours::look_at(Scanner words, std::size_t most) {
   }
 }
 
-void append_interpolated_normal(std::string& text, const VertexOrigin& origin,
-                                const std::array<std::array<std::string_view, 3>, 3>& of) {
+std::array<std::string, 3> interpolated_normal_words(const VertexOrigin& origin,
+                                                     const std::array<std::array<std::string_view, 3>, 3>& of) {
   std::array<Vec3d, 3> normals;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::array<double, 3> numbers = numbers_of(of[k]);
@@ -99,11 +99,13 @@ void append_interpolated_normal(std::string& text, const VertexOrigin& origin,
   }
   const Vec3d normal = interpolated_normal(origin, normals);
   const bool keeps_words = are_same(origin, of) || !normal.isFinite();
-  for (int i = 0; i < 3; ++i) {
-    text += ' ';
-    if (keeps_words) text += of[nearest(origin)][static_cast<std::size_t>(i)];
-    else append_number(text, normal[i], {Rounding::Kind::Single});  // single precision is enough for a normal
+  std::array<std::string, 3> words;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (keeps_words) words[i] = of[nearest(origin)][i];
+    // Single precision is enough for a normal.
+    else append_number(words[i], normal[static_cast<int>(i)], {Rounding::Kind::Single});
   }
+  return words;
 }
 
 }  // namespace vdb_offset::io

@@ -48,9 +48,8 @@ class ByteColours {
   bool whole_ = true, above_one_ = false;
 };
 
-/// Appends the normal between those that words stand for, each number behind a blank; the nearest one if it has no
-/// direction.
-void append_interpolated_normal(std::string& text, const VertexOrigin& origin,
-                                const std::array<std::array<std::string_view, 3>, 3>& of);
+/// The normal between those that words stand for; the nearest one if it has no direction.
+std::array<std::string, 3> interpolated_normal_words(const VertexOrigin& origin,
+                                                     const std::array<std::array<std::string_view, 3>, 3>& of);
 
 }  // namespace vdb_offset::io

@@ -12,40 +12,27 @@ namespace {
 
 class CornerRefiner {
  public:
-  CornerRefiner(PolygonView mesh, const Refinement& refinement, std::span<const std::uint32_t> of_corner,
-                std::size_t count)
-      : mesh_(mesh), refinement_(refinement), of_corner_(of_corner), count_(count), finder_(mesh) {}
+  CornerRefiner(const DerivedMesh& derived, std::span<const std::uint32_t> of_corner, std::size_t count)
+      : derived_(derived), of_corner_(of_corner), count_(count), last_(derived.added_vertices(), kNone) {}
 
   RefinedCorners run() {
     if (of_corner_.empty()) return {};
-    const std::vector<std::uint32_t> first = first_pieces(mesh_, refinement_);
-    last_.assign(refinement_.added.size(), kNone);
-    refined_.of_corner.reserve(refinement_.polygons.corners.size());
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
-      if (is_split(mesh_, refinement_, first, f)) {
-        for (std::uint32_t piece = first[f]; piece < first[f + 1]; ++piece)
-          for (const std::uint32_t v : refinement_.polygons.view().face(piece))
-            refined_.of_corner.push_back(value_at(f, v));
-      } else {
-        const auto own = of_corner_.subspan(mesh_.face_begin[f], mesh_.face(f).size());
-        refined_.of_corner.insert(refined_.of_corner.end(), own.begin(), own.end());
-      }
-    }
+    CornerFinder finder(derived_.source_mesh());
+    refined_.of_corner.reserve(derived_.mesh().corners.size());
+    for (std::uint32_t f = 0; f < derived_.face_count(); ++f)
+      for (std::size_t k = 0; k < derived_.mesh().face(f).size(); ++k)
+        refined_.of_corner.push_back(value_at(derived_.mesh().face(f)[k], derived_.corner(f, k, finder)));
     return std::move(refined_);
   }
 
  private:
-  std::uint32_t value_at(std::size_t face, std::uint32_t v) {
-    const std::size_t source_vertices = refinement_.source_vertices();
-    if (v < source_vertices) return value_of_source(face, v);
-    const auto added = static_cast<std::uint32_t>(v - source_vertices);
-    const VertexOrigin& origin = refinement_.added[added];
-    RefinedCorners::Between value{added, {kNone, kNone, kNone}};
+  std::uint32_t value_at(std::uint32_t v, const CornerOrigin& corner) {
+    RefinedCorners::Between value{v, {kNone, kNone, kNone}};
     std::uint32_t known = kNone;
     bool are_same = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!(origin.share[k] > 0)) continue;
-      value.of[k] = value_of_source(face, origin.vertex[k]);
+      if (!(corner.vertex.share[k] > 0)) continue;
+      value.of[k] = of_corner_[corner.corner[k]];
       if (value.of[k] == kNone) return kNone;
       are_same = are_same && (known == kNone || known == value.of[k]);
       known = value.of[k];
@@ -53,11 +40,9 @@ class CornerRefiner {
     return are_same ? known : number_of(value);
   }
 
-  std::uint32_t value_of_source(std::size_t face, std::uint32_t v) { return of_corner_[finder_.at(face, v)]; }
-
   /// The number of an interpolated value, a new one unless there is one like it.
   std::uint32_t number_of(const RefinedCorners::Between& value) {
-    std::uint32_t& last = last_[value.added];
+    std::uint32_t& last = last_[value.vertex - derived_.source_vertices()];
     for (std::uint32_t i = last; i != kNone; i = before_[i])
       if (refined_.added[i].of == value.of) return static_cast<std::uint32_t>(count_) + i;
     before_.push_back(last);
@@ -66,11 +51,9 @@ class CornerRefiner {
     return static_cast<std::uint32_t>(count_) + last;
   }
 
-  PolygonView mesh_;
-  const Refinement& refinement_;
+  const DerivedMesh& derived_;
   std::span<const std::uint32_t> of_corner_;
   std::size_t count_;
-  CornerFinder finder_;
   RefinedCorners refined_;
   std::vector<std::uint32_t> last_, before_;  // the last value at each added vertex, and of each value the one before
 };
@@ -92,22 +75,8 @@ std::uint32_t CornerFinder::at(std::size_t face, std::uint32_t vertex) {
   return found->second;
 }
 
-RefinedCorners refine_corners(PolygonView mesh, const Refinement& refinement, std::span<const std::uint32_t> of_corner,
-                              std::size_t count) {
-  return CornerRefiner(mesh, refinement, of_corner, count).run();
-}
-
-std::vector<std::uint32_t> first_pieces(PolygonView mesh, const Refinement& refinement) {
-  std::vector<std::uint32_t> first(mesh.face_count() + 1, 0);
-  for (const std::uint32_t face : refinement.parent) ++first[face + 1];
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) first[f + 1] += first[f];
-  return first;
-}
-
-bool is_split(PolygonView mesh, const Refinement& refinement, std::span<const std::uint32_t> first_piece,
-              std::size_t face) {
-  return first_piece[face + 1] - first_piece[face] != 1 ||
-         !std::ranges::equal(refinement.polygons.view().face(first_piece[face]), mesh.face(face));
+RefinedCorners refine_corners(const DerivedMesh& derived, std::span<const std::uint32_t> of_corner, std::size_t count) {
+  return CornerRefiner(derived, of_corner, count).run();
 }
 
 }  // namespace vdb_offset::io

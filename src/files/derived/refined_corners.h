@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "derived/derived_mesh.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset::io {
@@ -23,11 +24,11 @@ class CornerFinder {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> corners_;  // of that face: vertex and corner, ascending
 };
 
-/// Values at the corners of a refinement's faces, by their numbers.
+/// Values at the corners of the faces of a refinement, by their numbers.
 struct RefinedCorners {
   /// A value that is interpolated, at a vertex that was added.
   struct Between {
-    std::uint32_t added;              ///< Number of the vertex among those added.
+    std::uint32_t vertex;
     std::array<std::uint32_t, 3> of;  ///< Values at the vertices of its origin; kNone where the share is 0.
   };
 
@@ -38,15 +39,7 @@ struct RefinedCorners {
 /// Extends values of the source's corners to those of its pieces. At an added vertex faces share a value if they have
 /// the same ones at the vertices of its origin. `of_corner` has a value below `count`, or kNone, for each corner of the
 /// source; no corner has one if it is empty.
-/// \pre the refinement is one of the mesh. \throw InvalidInput if a piece has a vertex that its face knows nothing of
-RefinedCorners refine_corners(PolygonView mesh, const Refinement& refinement, std::span<const std::uint32_t> of_corner,
-                              std::size_t count);
-
-/// For each of the source's faces the first of its pieces; one number more than there are faces.
-std::vector<std::uint32_t> first_pieces(PolygonView mesh, const Refinement& refinement);
-
-/// Whether the pieces of a face are others than the face itself.
-bool is_split(PolygonView mesh, const Refinement& refinement, std::span<const std::uint32_t> first_piece,
-              std::size_t face);
+/// \throw InvalidInput if a piece has a vertex that its face knows nothing of
+RefinedCorners refine_corners(const DerivedMesh& derived, std::span<const std::uint32_t> of_corner, std::size_t count);
 
 }  // namespace vdb_offset::io

@@ -15,6 +15,8 @@ bool MovedMesh::any_has_moved() const {
   return false;
 }
 
+WrittenDocument Document::derive(const std::shared_ptr<const DerivedMesh>&, const std::string&) const { return {}; }
+
 void Document::read_attributes(const MeshFile&, Attributes&) const {}
 
 FaceNames Document::face_names() const { return {}; }

@@ -47,6 +47,10 @@ struct WrittenDocument {
   std::vector<std::string> lost;  ///< What of the source it does not hold, in words.
 };
 
+/// Puts it in place, and what lies beside it, together; nothing if the source's bytes have changed.
+/// \throw ReadError, WriteError
+void write_document(const std::string& path, const MeshFile& source, const WrittenDocument& written);
+
 /// Receives the names of a file's faces, in its order. What is set holds for the faces after it.
 class LabelListener {
  public:
@@ -61,6 +65,7 @@ class LabelListener {
 enum class NormalsOf : std::uint8_t { Vertices, Corners, Facets };
 
 class Rows;
+class DerivedMesh;  // derived/derived_mesh.h
 
 /// What the reader of a format keeps of a file, to write it again and to report what it holds besides a mesh.
 class Document {
@@ -72,6 +77,12 @@ class Document {
 
   /// The file in its own format, with all that it holds, over other positions.
   virtual WrittenDocument rewrite(const MovedMesh& moved) const = 0;
+
+  /// Whether it can be written with other faces.
+  virtual bool takes_faces() const { return false; }
+  /// The file in its own format, with all that it holds, over a mesh that is made of its own; `path` is where it will
+  /// be written. \pre takes_faces() \throw InvalidInput if the source's file has changed
+  virtual WrittenDocument derive(const std::shared_ptr<const DerivedMesh>& mesh, const std::string& path) const;
 
   /// Adds what other formats have a place for, too. `attributes.lost` comes with the source's extras; what is added is
   /// taken out of it.

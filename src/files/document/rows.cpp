@@ -38,7 +38,7 @@ struct ChangedNumber {
 class Rewriter {
  public:
   Rewriter(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
-           std::shared_ptr<const NewNormals> normals)
+           std::shared_ptr<const NewNormals> normals, std::size_t begin, std::size_t end)
       : source_(source),
         rows_(rows_of(source)),
         positions_(positions),
@@ -46,7 +46,8 @@ class Rewriter {
         normals_(std::move(normals)) {
     VDB_OFFSET_ASSERT(positions.size() == source.polygons.positions.size());
     VDB_OFFSET_ASSERT(rows_.position_at.size() == positions.size());
-    cuts_ = source.encoding == Encoding::Ascii ? cut_at_lines(source.text(), 0) : cut_between_numbers();
+    cuts_ = source.encoding == Encoding::Ascii ? cut_at_lines(source.text().substr(0, end), begin)
+                                               : cut_between_numbers(begin, end);
   }
 
   std::size_t pieces() const { return cuts_.size() - 1; }
@@ -60,11 +61,10 @@ class Rewriter {
   bool moved(std::size_t v) const { return has_moved(source_.polygons.positions[v], positions_[v], precision_); }
 
   /// Cuts a binary file into pieces, none of them between the numbers of one vertex or one normal.
-  std::vector<std::size_t> cut_between_numbers() const {
-    const std::size_t size = source_.text().size();
-    std::vector<std::size_t> cuts{0};
-    while (cuts.back() < size) {
-      std::uint64_t cut = std::min(cuts.back() + kPiece, size);
+  std::vector<std::size_t> cut_between_numbers(std::size_t begin, std::size_t end) const {
+    std::vector<std::size_t> cuts{begin};
+    while (cuts.back() < end) {
+      std::uint64_t cut = std::min(cuts.back() + kPiece, end);
       for (const auto& [offsets, bytes] :
            {std::pair{&rows_.position_at, rows_.position_bytes}, {&rows_.normal_at, rows_.normal_bytes}}) {
         const std::size_t i = offsets->first_from(cut);
@@ -175,12 +175,9 @@ std::vector<double> Rows::vertex_numbers(const MeshFile& source, const std::stri
                                  source.path, name, io::name(source.format)));
 }
 
-// Of a format that has no faces there are no shells and refinements.
 std::string Rows::with_face_rows(const MeshFile& source, std::vector<std::string>&) const {
   return std::string(source.text());
 }
-Pieces Rows::with_shell(const std::shared_ptr<const ShellContent>&, std::vector<std::string>&) const { return {}; }
-Pieces Rows::refined(const std::shared_ptr<const RefinedContent>&, std::vector<std::string>&) const { return {}; }
 
 bool use_line_feeds(MeshFile& file) {
   const std::string_view text = file.text();
@@ -200,11 +197,16 @@ Pieces with_line_ends_of(const MeshFile& source, Pieces pieces) {
           }};
 }
 
+Pieces rewrite_rows(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
+                    std::shared_ptr<const NewNormals> normals, std::size_t begin, std::size_t end) {
+  const auto rewriter = std::make_shared<const Rewriter>(source, positions, precision, std::move(normals), begin, end);
+  return {rewriter->pieces(), [rewriter](std::size_t piece) { return rewriter->make(piece); }};
+}
+
 Pieces rewrite_in_place(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                         std::shared_ptr<const NewNormals> normals) {
-  const auto rewriter = std::make_shared<const Rewriter>(source, positions, precision, std::move(normals));
   return with_line_ends_of(source,
-                           {rewriter->pieces(), [rewriter](std::size_t piece) { return rewriter->make(piece); }});
+                           rewrite_rows(source, positions, precision, std::move(normals), 0, source.text().size()));
 }
 
 }  // namespace vdb_offset::io

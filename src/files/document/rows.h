@@ -10,9 +10,6 @@
 
 namespace vdb_offset::io {
 
-struct ShellContent;    // derived/shell_writers.h
-struct RefinedContent;  // derived/refine_writers.h
-
 /// A file that is a mesh and little else, vertex by vertex and face by face (OBJ, OFF, PLY, STL, and curves in text):
 /// it is written again by replacing numbers where they stand, and can be given more rows.
 class Rows : public Document {
@@ -41,16 +38,12 @@ class Rows : public Document {
   WrittenDocument rewrite(const MovedMesh& moved) const override;
   std::vector<double> vertex_numbers(const MeshFile& source, const std::string& name) const override;
 
-  /// Whether each face is a row of its own, as it is not in strips of triangles.
-  virtual bool has_face_rows() const { return true; }
+  /// Each face is a row of its own, but not in strips of triangles.
+  bool takes_faces() const override { return true; }
   /// The file with a row for each face, if it has none. `lost` gets what it cannot keep.
   virtual std::string with_face_rows(const MeshFile& source, std::vector<std::string>& lost) const;
   /// Whether faces may have vertices in common.
   virtual bool shares_vertices() const { return true; }
-  // The file of a shell, and with the faces of a refinement. `lost` gets what it cannot keep. \throw InvalidInput if
-  // the source's file has changed
-  virtual Pieces with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const;
-  virtual Pieces refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>& lost) const;
 
  private:
   Syntax syntax_;
@@ -59,8 +52,13 @@ class Rows : public Document {
 /// \pre has_rows(file)
 const Rows& rows_of(const MeshFile& file);
 
-/// The source's own bytes, with other coordinates where a vertex moved and other normals where there are new ones. The
-/// pieces refer to `source` and `positions`; those of a text begin where cut_at_lines() cuts it. \pre has_rows(source)
+/// The source's own bytes from one to another, with other coordinates where a vertex moved and other normals where
+/// there are new ones. Lines end with line feeds. The pieces refer to `source` and `positions`; those of a text begin
+/// where cut_at_lines() cuts it. \pre has_rows(source), and no number goes over the ends
+Pieces rewrite_rows(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
+                    std::shared_ptr<const NewNormals> normals, std::size_t begin, std::size_t end);
+
+/// All of the source's bytes as rewrite_rows() has them, with the line ends of the file.
 Pieces rewrite_in_place(const MeshFile& source, std::span<const Vec3d> positions, const Rounding& precision,
                         std::shared_ptr<const NewNormals> normals = std::make_shared<NewNormals>());
 

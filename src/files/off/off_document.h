@@ -11,8 +11,7 @@ class OffRows final : public Rows {
   OffRows() : Rows({'#', false}) {}
 
   void read_attributes(const MeshFile& source, Attributes& attributes) const override;
-  Pieces with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const override;
-  Pieces refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>& lost) const override;
+  WrittenDocument derive(const std::shared_ptr<const DerivedMesh>& mesh, const std::string& path) const override;
 };
 
 }  // namespace vdb_offset::io

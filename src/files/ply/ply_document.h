@@ -12,10 +12,9 @@ class PlyRows final : public Rows {
 
   void read_attributes(const MeshFile& source, Attributes& attributes) const override;
   std::vector<double> vertex_numbers(const MeshFile& source, const std::string& name) const override;
-  bool has_face_rows() const override { return !has_strips; }
+  bool takes_faces() const override { return !has_strips; }
   std::string with_face_rows(const MeshFile& source, std::vector<std::string>& lost) const override;
-  Pieces with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const override;
-  Pieces refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>& lost) const override;
+  WrittenDocument derive(const std::shared_ptr<const DerivedMesh>& mesh, const std::string& path) const override;
 };
 
 }  // namespace vdb_offset::io

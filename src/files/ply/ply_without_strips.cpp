@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "bytes/append_number.h"
-#include "derived/refine_writers.h"
 #include "ply/ply_document.h"
 #include "ply/ply_rows.h"
 

@@ -14,8 +14,7 @@ class StlRows final : public Rows {
   void read_attributes(const MeshFile& source, Attributes& attributes) const override;
   /// The names of solids, in a text, are groups.
   void visit_labels(const MeshFile& source, LabelListener& listener) const override;
-  Pieces with_shell(const std::shared_ptr<const ShellContent>& content, std::vector<std::string>& lost) const override;
-  Pieces refined(const std::shared_ptr<const RefinedContent>& content, std::vector<std::string>& lost) const override;
+  WrittenDocument derive(const std::shared_ptr<const DerivedMesh>& mesh, const std::string& path) const override;
 };
 
 }  // namespace vdb_offset::io
