@@ -10,6 +10,7 @@
 
 #include "support/folder.h"
 #include "support/threemf_packages.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
 
 using namespace vdb_offset;
@@ -144,4 +145,32 @@ TEST_CASE("3mf: lib3mf reads a package of which a part was written anew", "[3mf]
     check_same(read.objects[0], {positions.begin(), positions.begin() + 4}, corners.subspan(0, 12));
     check_same(read.objects[1], {positions.begin(), positions.begin() + 4}, corners.subspan(0, 12));
   }
+}
+
+TEST_CASE("3mf: lib3mf reads a shell as the objects that its source has", "[3mf][io][shell]") {
+  const Folder folder;
+  const std::string model =
+      model_of("<object id=\"1\" name=\"one\">" + kTetrahedronXml +
+                   "</object><basematerials id=\"7\"><base name=\"red\" displaycolor=\"#FF0000\"/></basematerials>"
+                   "<object id=\"2\" name=\"two\" pid=\"7\" pindex=\"0\">" +
+                   kTetrahedronXml + "</object>",
+               "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 20 0 0\"/>");
+  const io::MeshFile file = io::parse_mesh("a.3mf", Format::ThreeMf,
+                                           zip_file({{"[Content_Types].xml", kContentTypes},
+                                                     {"Metadata/thumbnail.png", "not a picture"},
+                                                     {"_rels/.rels", kRelationships},
+                                                     {"3D/3dmodel.model", model}}));
+  std::vector<Vec3d> inner = file.polygons.positions;
+  for (Vec3d& p : inner) p += Vec3d(0.5, 0.25, 1);
+  io::write_shell(folder.file("s.3mf"), file, make_shell(file.polygons.view(), file.polygons.positions, inner, {}));
+  const ReadModel read = read_by_lib3mf(folder.file("s.3mf"));
+  CHECK(read.warnings == 0);
+  CHECK(read.items == 2);
+  REQUIRE(read.objects.size() == 2);
+  CHECK(read.objects[0].name == "one");
+  std::vector<Vec3d> both(file.polygons.positions.begin(), file.polygons.positions.begin() + 4);
+  both.insert(both.end(), inner.begin(), inner.begin() + 4);
+  std::vector<std::uint32_t> corners(file.polygons.corners.begin(), file.polygons.corners.begin() + 12);
+  for (std::size_t c = 0; c < 12; ++c) corners.push_back(4 + corners[c - c % 3 + (3 - c % 3) % 3]);
+  for (const ReadObject& object : read.objects) check_same(object, both, corners);
 }

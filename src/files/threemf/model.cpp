@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -131,6 +132,8 @@ class ModelReader : public XmlElements {
 
   Context enter_resource(std::string_view name, const XmlAttributes& attributes) {
     const std::string_view core = in_core(name);
+    if (std::int64_t id = 0; attributes.find("id") && parse_integer(attributes.find("id"), id) && id <= kMostId)
+      model_.largest_id = std::max(model_.largest_id, static_cast<std::uint32_t>(std::max<std::int64_t>(id, 0)));
     if (core == "object") {
       add_object(attributes);
       return Context::Object;
@@ -214,7 +217,9 @@ class ModelReader : public XmlElements {
     held_.add();
     model_.triangles.push_back(triangle);
     ++object().triangles;
-    if (with_properties_) add_property(group, index);
+    if (!with_properties_) return;
+    model_.triangle_at.push_back(here());
+    add_property(group, index);
   }
 
   void add_property(const char* group, const std::array<const char*, 3>& index) {
@@ -285,8 +290,8 @@ class ModelReader : public XmlElements {
   bool with_properties_, unit_alone_;
   std::vector<Context> open_;
   std::uint32_t group_ = 0;
-  // A triangle takes three numbers, and its property four; a vertex less.
-  MemoryWatch held_{label(), sizeof(Vec3d) + sizeof(std::uint64_t)}, placed_{label(), sizeof(ThreeMfPlacement)},
+  // A triangle takes three numbers, its property four, and its place two; a vertex less.
+  MemoryWatch held_{label(), sizeof(Vec3d) + 2 * sizeof(std::uint64_t)}, placed_{label(), sizeof(ThreeMfPlacement)},
       objects_{label(), sizeof(ThreeMfObject)};
 };
 

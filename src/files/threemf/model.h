@@ -53,7 +53,9 @@ struct ThreeMfModel {
   std::vector<Vec3d> positions;
   std::vector<std::uint64_t> vertex_at;  ///< First byte of each vertex' element.
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<ThreeMfProperty> properties;                              ///< Of triangles; empty unless asked for.
+  std::vector<ThreeMfProperty> properties;  ///< Of triangles; empty unless asked for.
+  std::vector<std::uint64_t> triangle_at;   ///< First byte of each triangle's element; empty unless asked for.
+  std::uint32_t largest_id = 0;             ///< Of all resources.
   std::map<std::uint32_t, std::vector<std::string>> materials;          ///< Names, by their group's id.
   std::map<std::uint32_t, std::vector<std::array<double, 4>>> colours;  ///< By their group's id.
   std::set<std::string> extras;                                         ///< What it holds besides, in words.

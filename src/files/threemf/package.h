@@ -29,6 +29,8 @@ struct PlacedMesh {
   std::uint32_t group;  // its name's index
 
   bool is_mirrored() const { return transform.determinant() < 0; }
+  /// Which of a triangle's corners one of its face is: those of a mirrored mesh are in the other order.
+  std::size_t corner(std::size_t k) const { return is_mirrored() ? 2 - k : k; }
 };
 
 /// Faces of the scene that have another name than the mesh that they are in.

@@ -37,7 +37,8 @@ class NameReader : public XmlElements {
       const std::int64_t first = whole(attributes.find("firstid")), last = whole(attributes.find("lastid"));
       if (first < 0 || last < first) fail("the first and the last triangle of a volume", "others");
       of_volume_ = object_;
-      names.volumes[of_volume_].push_back({static_cast<std::size_t>(first), static_cast<std::size_t>(last), {}});
+      names.volumes[of_volume_].push_back(
+          {static_cast<std::size_t>(first), static_cast<std::size_t>(last), {}, here()});
     } else if (name == "metadata") {
       take_name(attributes);
     }
@@ -66,6 +67,7 @@ SlicerNames read_slicer_names(const std::string& path, const ZipArchive& archive
       const std::string text = archive.read(*entry);
       NameReader reader(label, text);
       reader.run();
+      reader.names.settings = entry;
       return std::move(reader.names);
     } catch (const InvalidInput& error) {
       // They are another program's, and the mesh does not need them.

@@ -18,7 +18,9 @@ struct SlicerNames {
   struct Volume {
     std::size_t first, last;
     std::string name;
+    std::size_t at;  ///< First byte of its element.
   };
+  const ZipEntry* settings = nullptr;              ///< What they stand in.
   std::map<std::uint32_t, std::string> of_object;  ///< By the id of the object that an item places.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> of_part;  ///< By that, and by the component's.
   std::map<std::uint32_t, std::vector<Volume>> volumes;                    ///< By the object's id.

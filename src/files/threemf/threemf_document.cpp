@@ -11,10 +11,13 @@
 
 #include "bytes/nearest_names.h"
 #include "bytes/scanner.h"
+#include "derived/derived_mesh.h"
 #include "document/document.h"
 #include "document/format_readers.h"
 #include "ground/system/memory.h"
+#include "threemf/derived_part.h"
 #include "threemf/package.h"
+#include "threemf/slicer_names.h"
 #include "threemf/vertex_text.h"
 #include "vdb_offset/run.h"
 
@@ -51,6 +54,8 @@ class ThreeMfDocument : public Document {
   }
 
   WrittenDocument rewrite(const MovedMesh& moved) const override;
+  bool takes_faces() const override { return true; }
+  WrittenDocument derive(const SharedDerived& derived, const std::string& path) const override;
   void read_attributes(const MeshFile& source, Attributes& attributes) const override;
   FaceNames face_names() const override;
 
@@ -78,9 +83,6 @@ class ThreeMfDocument : public Document {
   std::vector<NamedFaces> volumes_;
 };
 
-/// A corner of a face is one of a triangle's: those of a mirrored mesh are in the other order.
-std::size_t triangle_corner(const PlacedMesh& mesh, std::size_t k) { return mesh.is_mirrored() ? 2 - k : k; }
-
 void ThreeMfDocument::place_meshes(const ThreeMfScene& scene, Polygons& polygons) {
   std::size_t vertices = 0, faces = 0;
   for (const PlacedMesh& mesh : scene.meshes) vertices += mesh.vertices, faces += mesh.faces;
@@ -101,8 +103,8 @@ void ThreeMfDocument::place_meshes(const ThreeMfScene& scene, Polygons& polygons
     }
     for (std::size_t t = 0; t < mesh.faces; ++t) {
       for (std::size_t k = 0; k < 3; ++k)
-        polygons.corners.push_back(static_cast<std::uint32_t>(
-            mesh.first_vertex + model.triangles[mesh.first_triangle + t][triangle_corner(mesh, k)]));
+        polygons.corners.push_back(
+            static_cast<std::uint32_t>(mesh.first_vertex + model.triangles[mesh.first_triangle + t][mesh.corner(k)]));
       polygons.close_face();
     }
   }
@@ -185,6 +187,38 @@ WrittenDocument ThreeMfDocument::rewrite(const MovedMesh& moved) const {
   return written;
 }
 
+WrittenDocument ThreeMfDocument::derive(const SharedDerived& derived, const std::string& path) const {
+  std::vector<std::string> remarks;  // have been told
+  const SlicerNames names = read_slicer_names(path_, archive_, remarks);
+  WrittenDocument written;
+  std::vector<ZipArchive::Replacement> replacements;
+  const std::size_t count = derived->source_vertices();
+  const MovedMesh moved{derived->source(), derived->mesh().positions.first(count), derived->precision(), {}, path};
+  std::vector<DerivedObject> objects = split_by_objects(*derived, meshes_);
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const std::string text = archive_.read(*parts_[p].entry);
+    const ThreeMfModel model = read_model(parts_[p].label, text, true);
+    std::vector<DerivedObject> of_part;
+    for (DerivedObject& object : objects)
+      if (object.placed.part == p) of_part.push_back(std::move(object));
+    if (of_part.empty()) continue;
+    for (DerivedObject& object : of_part) {
+      const auto volumes = names.volumes.find(model.objects[object.placed.object].id);
+      order_triangles(*derived, model, object, p == 0 && volumes != names.volumes.end() ? &volumes->second : nullptr);
+      if (model.extras.contains("elements 'trianglesets' of meshes") && !object.keeps_numbers)
+        written.lost.emplace_back("which triangles sets of them hold");
+    }
+    const Pieces pieces = derived_part(text, model, *derived, of_part, moved);
+    replacements.push_back({parts_[p].entry, pack(parts_[p].label, pieces, parts_[p].entry->method)});
+    if (p > 0 || names.volumes.empty()) continue;
+    const std::string settings = with_volumes(archive_.read(*names.settings), names, model, of_part);
+    replacements.push_back(
+        {names.settings, pack(path_, {1, [&](std::size_t) { return settings; }}, names.settings->method)});
+  }
+  written.file = archive_.with(std::move(replacements));
+  return written;
+}
+
 template <class Wanted, class Visit>
 void ThreeMfDocument::visit_properties(Wanted&& wanted, Visit&& visit) const {
   for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -235,7 +269,7 @@ void ThreeMfDocument::read_attributes(const MeshFile& source, Attributes& attrib
                        const ThreeMfProperty& property = model.properties[mesh.first_triangle + t];
                        const auto group = model.colours.find(property.group);
                        for (std::size_t k = 0; k < 3; ++k) {
-                         const std::size_t corner = triangle_corner(mesh, k);
+                         const std::size_t corner = mesh.corner(k);
                          if (group == model.colours.end() || property.index[corner] >= group->second.size()) {
                            agree = false;
                            continue;
