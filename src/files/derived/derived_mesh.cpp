@@ -43,10 +43,6 @@ std::vector<Vec3d> shell_vertex_normals(const Shell& shell, const Rounding& prec
   return normals;
 }
 
-std::optional<Vec3d> if_known(const Vec3d& normal) {
-  return normal.lengthSqr() > 0 ? std::optional(normal) : std::nullopt;
-}
-
 }  // namespace
 
 DerivedMesh::DerivedMesh(const MeshFile& source, const Shell& shell, const Rounding& precision, Normals normals)
@@ -72,33 +68,9 @@ DerivedMesh::DerivedMesh(const MeshFile& source, const Refinement& refinement)
   }
 }
 
-VertexOrigin DerivedMesh::origin(std::uint32_t v) const {
-  if (!is_copy(v)) return refinement_->added[v - source_vertices()];
-  const std::uint32_t of = is_shell() ? shell_->source_vertex(v) : v;
-  return {kNone, {of, of, of}, {1, 0, 0}};
-}
-
-Vec3d DerivedMesh::position(std::uint32_t v) const {
-  return new_position(v).value_or(source_.polygons.positions[origin(v).vertex[0]]);
-}
-
-std::optional<Vec3d> DerivedMesh::new_position(std::uint32_t v) const {
-  const Vec3d& position = mesh_.positions[v];
-  if (!is_copy(v)) return position;
-  if (!has_moved(source_.polygons.positions[origin(v).vertex[0]], position, precision_)) return std::nullopt;
-  return precision_(position);
-}
-
 bool DerivedMesh::is_source(ShellPart skin) const {
   const std::size_t first = skin == ShellPart::Inner ? source_vertices() : 0;
   return std::ranges::equal(mesh_.positions.subspan(first, source_vertices()), source_.polygons.positions);
-}
-
-FaceRange DerivedMesh::faces_of(ShellPart part) const {
-  const auto of_skin = is_shell() ? static_cast<std::uint32_t>(shell_->skin_faces()) : face_count();
-  if (part == ShellPart::Outer) return {0, of_skin};
-  if (!is_shell()) return {of_skin, of_skin};
-  return part == ShellPart::Inner ? FaceRange{of_skin, 2 * of_skin} : FaceRange{2 * of_skin, face_count()};
 }
 
 FaceRange DerivedMesh::pieces_of(std::uint32_t source_face) const {
@@ -121,16 +93,6 @@ CornerOrigin DerivedMesh::corner(std::uint32_t f, std::size_t k, CornerFinder& f
     for (std::size_t i = 0; i < 3; ++i)
       found.corner[i] = found.vertex.share[i] > 0 ? finder.at(of, found.vertex.vertex[i]) : first;
   return found;
-}
-
-std::optional<Vec3d> DerivedMesh::new_normal(std::size_t n, bool inner) const {
-  const NewNormals& of_skin = normals_[inner];
-  if (of_skin.value.empty() || !(of_skin.value[n].lengthSqr() > 0)) return std::nullopt;
-  return inner ? Vec3d(0.0) - of_skin.value[n] : of_skin.value[n];
-}
-
-std::optional<Vec3d> DerivedMesh::new_vertex_normal(std::uint32_t v) const {
-  return vertex_normals_.empty() ? new_normal(origin(v).vertex[0], is_inner(v)) : if_known(vertex_normals_[v]);
 }
 
 std::optional<Vec3d> DerivedMesh::vertex_normal(std::uint32_t v, const std::array<Vec3d, 3>& of_origin) const {

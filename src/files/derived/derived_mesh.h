@@ -85,7 +85,9 @@ class DerivedMesh {
 
   /// The new value of one of the source's normals; none if it stays as it is, but for the sign of an inner one.
   std::optional<Vec3d> new_normal(std::size_t n, bool inner) const;
-  /// The same of the normal of a vertex, of those at its origin; none if the nearest of these stays.
+  /// The same of the normal of a vertex that is a copy.
+  std::optional<Vec3d> new_vertex_normal(std::uint32_t v) const;
+  /// The normal of a vertex, of those at its origin; none if the nearest of these stays.
   std::optional<Vec3d> vertex_normal(std::uint32_t v, const std::array<Vec3d, 3>& of_origin) const;
   std::size_t disagreeing_normals() const { return normals_[0].disagreeing + normals_[1].disagreeing; }
   /// The new normals of the source's vertices, or corners.
@@ -105,7 +107,6 @@ class DerivedMesh {
 
  private:
   bool has_one_like(std::uint32_t source_face) const;
-  std::optional<Vec3d> new_vertex_normal(std::uint32_t v) const;
   std::array<std::string_view, 3> words_at(const NumberTriple& at) const;
   std::array<std::string, 3> words_of(const std::optional<Vec3d>& value, bool inner, const NumberTriple& at) const;
 
@@ -121,6 +122,43 @@ class DerivedMesh {
   std::vector<Vec3d> vertex_normals_;  // of all vertices, if splits need normals of their own
 };
 using SharedDerived = std::shared_ptr<const DerivedMesh>;
+
+// Inline, as modules use them that have nothing else of this class (modules.cmake).
+
+inline VertexOrigin DerivedMesh::origin(std::uint32_t v) const {
+  if (!is_copy(v)) return refinement_->added[v - source_vertices()];
+  const std::uint32_t of = is_shell() ? shell_->source_vertex(v) : v;
+  return {kNone, {of, of, of}, {1, 0, 0}};
+}
+
+inline std::optional<Vec3d> DerivedMesh::new_position(std::uint32_t v) const {
+  const Vec3d& position = mesh_.positions[v];
+  if (!is_copy(v)) return position;
+  const Vec3d& before = source_.polygons.positions[origin(v).vertex[0]];
+  return has_moved(before, position, precision_) ? std::optional(precision_(before, position)) : std::nullopt;
+}
+
+inline Vec3d DerivedMesh::position(std::uint32_t v) const {
+  return new_position(v).value_or(source_.polygons.positions[origin(v).vertex[0]]);
+}
+
+inline FaceRange DerivedMesh::faces_of(ShellPart part) const {
+  const auto of_skin = is_shell() ? static_cast<std::uint32_t>(shell_->skin_faces()) : face_count();
+  if (part == ShellPart::Outer) return {0, of_skin};
+  if (!is_shell()) return {of_skin, of_skin};
+  return part == ShellPart::Inner ? FaceRange{of_skin, 2 * of_skin} : FaceRange{2 * of_skin, face_count()};
+}
+
+inline std::optional<Vec3d> DerivedMesh::new_normal(std::size_t n, bool inner) const {
+  const NewNormals& of_skin = normals_[inner];
+  if (of_skin.value.empty() || !(of_skin.value[n].lengthSqr() > 0)) return std::nullopt;
+  return inner ? Vec3d(0.0) - of_skin.value[n] : of_skin.value[n];
+}
+
+inline std::optional<Vec3d> DerivedMesh::new_vertex_normal(std::uint32_t v) const {
+  if (vertex_normals_.empty()) return new_normal(origin(v).vertex[0], is_inner(v));
+  return vertex_normals_[v].lengthSqr() > 0 ? std::optional(vertex_normals_[v]) : std::nullopt;
+}
 
 /// The source's document over the mesh. \pre the document takes faces \throw InvalidInput if the source's file has
 /// changed

@@ -23,12 +23,20 @@ struct Block {
   AffineFrame frame;
 };
 
+/// A primitive of which the mesh has faces: number `number` of mesh `mesh`.
+struct PlacedPrimitive {
+  std::size_t mesh, number, block;
+  std::uint32_t first_face;
+  bool mirrored;  ///< Its triangles are turned round.
+};
+
 /// A glTF file, whose own bytes are kept but for those that move.
 struct Contents {
   Container container;
   std::vector<Buffer> buffers;
   std::vector<std::string> image_uris;  ///< Of images that are files.
   std::vector<Block> blocks;
+  std::vector<PlacedPrimitive> primitives;  ///< In the order of their faces.
   FaceNames names;
 };
 
@@ -37,6 +45,8 @@ class GltfDocument : public Document {
   explicit GltfDocument(Contents contents) : contents_(std::move(contents)) {}
 
   WrittenDocument rewrite(const MovedMesh& moved) const override;
+  bool takes_faces() const override { return true; }
+  WrittenDocument derive(const std::shared_ptr<const DerivedMesh>& derived, const std::string& path) const override;
   void read_attributes(const MeshFile& source, Attributes& attributes) const override;
   FaceNames face_names() const override { return contents_.names; }
 

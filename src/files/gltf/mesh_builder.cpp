@@ -59,7 +59,7 @@ std::array<std::uint64_t, 3> corners_of(std::uint64_t mode, std::uint64_t triang
 /// A primitive of triangles.
 struct MeshBuilder::Primitive {
   JsonValue value;
-  std::size_t block;
+  std::size_t mesh, number, block;
   std::optional<Accessor> indices;
   std::uint64_t mode, corners;
   bool mirrored;
@@ -100,10 +100,11 @@ void MeshBuilder::add_mesh(std::size_t number, const Placement& placement) {
   repeated_ += placement.nodes > 1;
   skinned_ += placement.is_skinned;
   const std::string group = on_one_line(placement.node_name.empty() ? mesh.text_of("name") : placement.node_name);
-  for (std::size_t p = 0; p < primitives.size(); ++p) add_primitive(primitives[p], placement, group);
+  for (std::size_t p = 0; p < primitives.size(); ++p) add_primitive(primitives[p], number, p, placement, group);
 }
 
-void MeshBuilder::add_primitive(const JsonValue& value, const Placement& placement, const std::string& group) {
+void MeshBuilder::add_primitive(const JsonValue& value, std::size_t mesh, std::size_t number,
+                                const Placement& placement, const std::string& group) {
   if (const auto extensions = value.find("extensions"))
     if (const auto draco = extensions->find("KHR_draco_mesh_compression"))
       draco->fail("geometry as plain floats", "compressed by Draco, which is not supported");
@@ -116,8 +117,8 @@ void MeshBuilder::add_primitive(const JsonValue& value, const Placement& placeme
   has_targets_ |= value.find("targets").has_value();
   const std::optional<std::size_t> block = block_of(value.at("attributes"), placement);
   if (!block) return;
-  Primitive primitive{value, *block, {}, mode, contents_.blocks[*block].position.count, placement.frame.mirrors(),
-                      group};
+  Primitive primitive{
+      value, mesh, number, *block, {}, mode, contents_.blocks[*block].position.count, placement.frame.mirrors(), group};
   if (const auto indices = value.find("indices")) {
     primitive.indices = accessors_.read(accessors_.index_of(*indices));
     const Component type = primitive.indices->component;
@@ -217,6 +218,8 @@ void MeshBuilder::read_positions() {
 
 void MeshBuilder::add_triangles(const Primitive& primitive) {
   const Block& block = contents_.blocks[primitive.block];
+  contents_.primitives.push_back({primitive.mesh, primitive.number, primitive.block,
+                                  static_cast<std::uint32_t>(file_.polygons.face_count()), primitive.mirrored});
   const std::uint64_t count = triangle_count(primitive.mode, primitive.corners);
   std::size_t made = 0;
   for (std::uint64_t t = 0; t < count; ++t) {

@@ -8,9 +8,22 @@
 
 #include "gltf/accessors.h"
 #include "gltf/gltf_document.h"
-#include "gltf/scene.h"
+#include "gltf/json.h"
+#include "ground/numbers/rounding.h"
 
 namespace vdb_offset::io::gltf {
+
+/// Where a scene places a mesh first.
+struct Placement {
+  std::size_t nodes = 0;  ///< That place it.
+  AffineFrame frame;
+  std::string node_name;
+  bool is_skinned = false;  ///< Then it has no frame of its own: its bones place it.
+};
+
+/// The placement of each mesh in the file's scene; without a scene, in the trees of all nodes.
+/// \throw InvalidInput for nodes that are no trees, or a transform of a mesh that cannot be undone
+std::vector<Placement> read_placements(const JsonValue& root);
 
 /// Makes one mesh of the triangles of a file's placed meshes.
 class MeshBuilder {
@@ -34,7 +47,8 @@ class MeshBuilder {
  private:
   struct Primitive;
   void add_mesh(std::size_t number, const Placement& placement);
-  void add_primitive(const JsonValue& value, const Placement& placement, const std::string& group);
+  void add_primitive(const JsonValue& value, std::size_t mesh, std::size_t number, const Placement& placement,
+                     const std::string& group);
   std::optional<std::size_t> block_of(const JsonValue& attributes, const Placement& placement);
   void add_attributes(const JsonValue& attributes, Block& block);
   std::optional<Accessor> find_floats(const JsonValue& attributes, const char* name, std::uint32_t width,

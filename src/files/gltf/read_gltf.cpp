@@ -12,7 +12,6 @@
 #include "gltf/gltf_document.h"
 #include "gltf/json.h"
 #include "gltf/mesh_builder.h"
-#include "gltf/scene.h"
 #include "gltf/uri.h"
 #include "vdb_offset/run.h"
 

@@ -15,18 +15,6 @@ namespace {
 // Bytes that are written at a time. Not measured beside other sizes.
 constexpr std::size_t kSlice = std::size_t{1} << 22;
 
-/// Bytes in pieces; `owner` keeps them.
-Pieces in_slices(std::string_view bytes, std::shared_ptr<const std::string> owner = {}) {
-  return {(bytes.size() + kSlice - 1) / kSlice,
-          [bytes, kept = std::move(owner)](std::size_t i) { return std::string(bytes.substr(i * kSlice, kSlice)); }};
-}
-
-Pieces in_slices(std::string text) {
-  auto owner = std::make_shared<const std::string>(std::move(text));
-  const std::string_view bytes = *owner;
-  return in_slices(bytes, std::move(owner));
-}
-
 /// Where the URI of each buffer stands in the JSON text, quotes included.
 std::pair<std::size_t, std::size_t> uri_at(std::string_view json, std::size_t buffer) {
   const JsonText text(json);
@@ -115,6 +103,17 @@ class Rewriter {
 };
 
 }  // namespace
+
+Pieces in_slices(std::string_view bytes, std::shared_ptr<const std::string> owner) {
+  return {(bytes.size() + kSlice - 1) / kSlice,
+          [bytes, kept = std::move(owner)](std::size_t i) { return std::string(bytes.substr(i * kSlice, kSlice)); }};
+}
+
+Pieces in_slices(std::string text) {
+  auto owner = std::make_shared<const std::string>(std::move(text));
+  const std::string_view bytes = *owner;
+  return in_slices(bytes, std::move(owner));
+}
 
 WrittenDocument GltfDocument::rewrite(const MovedMesh& moved) const { return Rewriter(contents_, moved).run(); }
 

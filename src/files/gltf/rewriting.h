@@ -6,12 +6,17 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gltf/gltf_document.h"
 #include "gltf/json.h"
 
 namespace vdb_offset::io::gltf {
+
+/// Bytes in pieces; `owner` keeps them.
+Pieces in_slices(std::string_view bytes, std::shared_ptr<const std::string> owner = {});
+Pieces in_slices(std::string text);
 
 /// Copies of the buffers that change, with the positions, normals and tangents of a moved mesh.
 class PatchedBuffers {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gltf/scene.h"
+#include "gltf/mesh_builder.h"
 
 #include <array>
 #include <cmath>
