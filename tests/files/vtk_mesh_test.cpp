@@ -36,6 +36,8 @@
 #include "bytes/chunked_output.h"
 #include "document/convert.h"
 #include "ground/numbers/rounding.h"
+#include "support/folder.h"
+#include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/run.h"
 
@@ -221,6 +223,63 @@ TEST_CASE("VTK meshes: faces of grids, strips and pixels", "[vtk][documents]") {
   grid->GetCellData()->AddArray(named_array<vtkIntArray>("group", 1, 4));
   CHECK_THROWS_WITH(parsed(io::Format::Vtu, written<vtkXMLUnstructuredGridWriter>(grid, [](auto&) {})),
                     Catch::Contains("cell 3: expected a face") && Catch::Contains("a solid"));
+}
+
+TEST_CASE("VTK meshes: a shell keeps the arrays of points and cells", "[vtk][documents][shell]") {
+  const Folder folder;
+  const auto polygons = tetrahedron(VTK_DOUBLE);
+  polygons->GetCellData()->GetArray("part")->SetName("zone");
+  const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(polygons->GetPoints());
+  for (vtkIdType cell = 0; cell < 6; ++cell)
+    grid->InsertNextCell(polygons->GetCellType(cell), polygons->GetCell(cell)->GetPointIds());
+  grid->GetPointData()->ShallowCopy(polygons->GetPointData());
+  grid->GetCellData()->ShallowCopy(polygons->GetCellData());
+  grid->GetFieldData()->ShallowCopy(polygons->GetFieldData());
+  const auto check = [&](io::Format format, bool is_grid, const std::string& bytes, const std::string& lost) {
+    const io::MeshFile file = parsed(format, bytes);
+    std::vector<Vec3d> inner = file.polygons.positions;
+    for (Vec3d& p : inner) p += Vec3d(0.25, 0, 0.5);
+    const std::vector<std::uint8_t> three{1, 1, 1, 0};
+    const Shell shell = make_shell(file.polygons.view(), file.polygons.positions, inner, {}, {}, three);
+    const std::string path = folder.file(std::string("s.") + io::name(format));
+    CHECK(io::write_shell(path, file, shell, {.normals = io::Normals::Keep}).lost == lost);
+    const auto was = read_back(format, is_grid, bytes), is = read_back(format, is_grid, slurp(path));
+    CHECK(io::read_mesh(path).polygons.positions == shell.polygons.positions);
+    CHECK(io::read_mesh(path).polygons.corners == shell.polygons.corners);
+    // A point, a line, three faces on each side, and the rim of three quads; all that they come from is before them.
+    REQUIRE(is->GetNumberOfCells() == 11);
+    CHECK(is->GetCellType(1) == VTK_LINE);
+    vtkFieldData &points = *is->GetPointData(), &cells = *is->GetCellData();
+    for (const char* const name : {"thickness", "RGB"}) {
+      REQUIRE(points.GetArray(name));
+      CHECK(points.GetArray(name)->GetDataType() == was->GetPointData()->GetArray(name)->GetDataType());
+      for (vtkIdType v = 0; v < 8; ++v)
+        CHECK(points.GetArray(name)->GetComponent(v, 0) == was->GetPointData()->GetArray(name)->GetComponent(v % 4, 0));
+    }
+    REQUIRE(cells.GetArray("zone"));
+    const vtkIdType from[] = {0, 1, 2, 3, 4, 2, 3, 4, 2, 3, 4};
+    for (vtkIdType cell = 0; cell < 8; ++cell)
+      CHECK(cells.GetArray("zone")->GetComponent(cell, 0) ==
+            was->GetCellData()->GetArray("zone")->GetComponent(from[cell], 0));
+    REQUIRE(cells.GetArray("part"));
+    CHECK(cells.GetArray("part")->GetComponent(4, 0) == 0);
+    CHECK(cells.GetArray("part")->GetComponent(5, 0) == 1);
+    CHECK(cells.GetArray("part")->GetComponent(10, 0) == 2);
+    CHECK(is->GetFieldData()->GetAbstractArray("note")->GetVariantValue(0).ToString() == "<as it was> & so on");
+    vtkDataArray& normals = *points.GetArray("Normals");
+    for (vtkIdType v = 0; v < 4; ++v) CHECK(Vec3d(normals.GetTuple3(v + 4)) == -Vec3d(normals.GetTuple3(v)));
+    // Computed anew, the inner ones are of length 1.
+    io::write_shell(path, file, shell);
+    const auto anew = read_back(format, is_grid, slurp(path));
+    CHECK(Vec3d(anew->GetPointData()->GetArray("Normals")->GetTuple3(4)).length() == Approx(1).epsilon(1e-6));
+  };
+  check(io::Format::Vtp, false, written<vtkXMLPolyDataWriter>(polygons, [](auto&) {}), "");
+  check(io::Format::Vtu, true, written<vtkXMLUnstructuredGridWriter>(grid, [](auto&) {}), "");
+  check(io::Format::Vtk, false, written<vtkPolyDataWriter>(polygons, [](auto& w) { w.SetFileTypeToBinary(); }),
+        "the layout of the text");
+  check(io::Format::Vtk, true, written<vtkUnstructuredGridWriter>(grid, [](auto& w) { w.SetFileTypeToBinary(); }),
+        "the layout of the text");
 }
 
 TEST_CASE("VTK meshes: distances are arrays of points", "[vtk][documents]") {

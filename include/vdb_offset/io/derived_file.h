@@ -26,6 +26,12 @@ namespace vdb_offset::io {
 ///   their border. Other elements come once and refer to the outer skin.
 /// - STL: ASCII: a solid for each part; binary: the rim's facets have the attribute bytes of those at their border.
 /// - OFF: the rim's faces have the colours of those at their border.
+/// - 3MF: objects, their places and names, and all other parts of the package. A new triangle has the properties of the
+///   corners that it comes from; triangles of an object without any have base materials `outer`, `inner` and `rim`. An
+///   object of which the shell has no faces stays. Slicers' volumes hold what comes of their triangles.
+/// - glTF: nodes, materials, textures and skins; each primitive has its part of the shell, and each vertex all that the
+///   one has which it comes from, the rim's as well. A mesh of which the shell has no faces stays.
+/// - VTK: arrays of points and cells; a cell array `part`, as in PLY. Points and lines come once, with the outer skin.
 /// \pre the shell was made of the source's polygons. \throw as write_mesh(), and InvalidInput for a shell of another
 /// mesh.
 VDB_OFFSET_API WriteResult write_shell(const Target& target, const MeshFile& source, const Shell& shell);

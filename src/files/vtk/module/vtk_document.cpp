@@ -181,15 +181,20 @@ WrittenDocument VtkDocument::rewrite(const MovedMesh& moved) const {
   if (header_.legacy) {
     if (auto bytes = rewrite_legacy(moved.source, header_.ascii, *data_, *copy, normals(), turned))
       return {whole(*std::move(bytes)), {}, {}};
-    // A layout in which the numbers are not found: a new file of VTK's, binary, as its texts have too few digits.
-    return {whole(header_.grid ? legacy_of<vtkUnstructuredGridWriter>(*copy, moved.path)
-                               : legacy_of<vtkPolyDataWriter>(*copy, moved.path)),
+  }
+  return as_new_file(*copy, moved.path);
+}
+
+WrittenDocument VtkDocument::as_new_file(vtkPointSet& data, const std::string& path) const {
+  // Of a legacy file in a layout in which numbers are not found: binary, as VTK's texts have too few digits.
+  if (header_.legacy)
+    return {whole(header_.grid ? legacy_of<vtkUnstructuredGridWriter>(data, path)
+                               : legacy_of<vtkPolyDataWriter>(data, path)),
             {},
             {"the layout of the text"}};
-  }
   if (header_.grid)
-    return {whole(xml_of(*vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), *copy, header_, moved.path)), {}, {}};
-  return {whole(xml_of(*vtkSmartPointer<vtkXMLPolyDataWriter>::New(), *copy, header_, moved.path)), {}, {}};
+    return {whole(xml_of(*vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), data, header_, path)), {}, {}};
+  return {whole(xml_of(*vtkSmartPointer<vtkXMLPolyDataWriter>::New(), data, header_, path)), {}, {}};
 }
 
 void VtkDocument::read_attributes(const MeshFile&, Attributes& attributes) const {

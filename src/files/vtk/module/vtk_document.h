@@ -22,6 +22,8 @@ class VtkDocument : public Document {
   VtkDocument(VtkHeader header, vtkSmartPointer<vtkPointSet> data, std::vector<std::int64_t> cell);
 
   WrittenDocument rewrite(const MovedMesh& moved) const override;
+  bool takes_faces() const override { return true; }
+  WrittenDocument derive(const std::shared_ptr<const DerivedMesh>& derived, const std::string& path) const override;
   void read_attributes(const MeshFile& source, Attributes& attributes) const override;
   FaceNames face_names() const override;
   std::vector<double> vertex_numbers(const MeshFile& source, const std::string& name) const override;
@@ -32,6 +34,9 @@ class VtkDocument : public Document {
   std::vector<std::string> arrays_in_words() const;
 
  private:
+  /// A data set as a new file of the same kind.
+  WrittenDocument as_new_file(vtkPointSet& data, const std::string& path) const;
+
   VtkHeader header_;
   vtkSmartPointer<vtkPointSet> data_;
   std::vector<std::int64_t> cell_;
