@@ -97,13 +97,16 @@ class PartText {
   }
 
   void append_vertex(std::string& to, const DerivedObject& object, std::size_t i) const {
-    const Vec3d position = object.placed.transform.source_of(derived_.position(object.added[i]));
+    const std::uint32_t v = object.added[i], own = derived_.origin(v).vertex[0];
+    const Vec3d position = object.placed.transform.source_of(derived_.position(v));
     if (!position.isFinite())
       throw InvalidInput(moved_.source.path + ": expected transforms that lead back to finite numbers, got others");
-    const std::size_t like = last_vertex_at(object);
+    std::size_t like = last_vertex_at(object);
     to += space_before(text_, like);
+    const bool is_of_object = is_own(object.placed, own), keeps_numbers = is_of_object && !derived_.new_position(v);
+    if (is_of_object) like = model_.vertex_at[object.placed.first_in_part + own - object.placed.first_vertex];
     append_tag(to, text_, like, [&](std::string_view name, auto, std::string& value) {
-      return append_coordinate_named(value, name, position, moved_.precision);
+      return !keeps_numbers && append_coordinate_named(value, name, position, moved_.precision);
     });
     to += "/>";
   }
