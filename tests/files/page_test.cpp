@@ -202,6 +202,56 @@ TEST_CASE("page: names and reports end no element of it, whatever is in them", "
   CHECK(nlohmann::json::parse(element(read.text, "report"))["input"] == "</script><script>");
 }
 
+TEST_CASE("page: a mesh alone has its unit and the axis that is up", "[page]") {
+  const Folder folder;
+  const Polygons box = shapes::box({1, 1, 1}, 2, false);
+  io::Page page;
+  page.source = box.view();
+  page.unit = "mm";
+  page.up = 1;
+  const ReadPage read = written(folder, page);
+  CHECK(read.facts["surfaces"].empty());
+  CHECK(read.facts["unit"] == "mm");
+  CHECK(read.facts["up"] == 1);
+  CHECK(read.array<std::uint32_t>("corners").size() == 6 * box.face_count());
+}
+
+TEST_CASE("page: a surface with a mesh of its own has that, and no measures", "[page]") {
+  const Folder folder;
+  const Polygons box = shapes::box({1, 1, 1}, 1, true), ball = shapes::icosphere(2, 3);
+  io::Page page;
+  page.source = box.view();
+  io::PageSurface& surface = page.surfaces.emplace_back();
+  surface.name = "ball";
+  surface.own = ball.view();
+  const ReadPage read = written(folder, page);
+  const nlohmann::json& facts = read.facts["surfaces"][0];
+  CHECK(facts["vertices"] == ball.positions.size());
+  CHECK_FALSE(facts.contains("histogram"));
+  CHECK_FALSE(read.facts["arrays"].contains("surface0.share"));
+  CHECK(read.array<std::uint32_t>("surface0.corners").size() == 3 * ball.face_count());
+  const auto positions = read.array<float>("surface0.positions");
+  const auto centre = read.facts["centre"].get<std::vector<double>>();
+  REQUIRE(positions.size() == 3 * ball.positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    REQUIRE(positions[i] == static_cast<float>(ball.positions[i / 3][static_cast<int>(i % 3)] - centre[i % 3]));
+}
+
+TEST_CASE("page: faces with faults have their groups, so that they can be hidden", "[page]") {
+  const Folder folder;
+  const Moved moved(shapes::box({1, 1, 1}, 1, true), 0);
+  WallNames groups{{"a", "b"}, std::vector<std::uint32_t>(moved.mesh.face_count(), 0)};
+  std::vector<FaceFault> faults(moved.mesh.face_count(), FaceFault::None);
+  groups.of_face[5] = 1;
+  faults[3] = faults[5] = FaceFault::Inverted;
+  io::Page page = moved.page();
+  page.groups = &groups;
+  page.surfaces[0].face_faults = faults;
+  const ReadPage read = written(folder, page);
+  CHECK(read.array<std::uint32_t>("surface0.fault_face") == std::vector<std::uint32_t>{3, 5});
+  CHECK(read.array<std::uint32_t>("surface0.fault_group") == std::vector<std::uint32_t>{0, 1});
+}
+
 TEST_CASE("page: vertices without a distance have no share, and stand in no bar", "[page]") {
   const Folder folder;
   Moved moved(shapes::box({1, 1, 1}, 1, true), 0);

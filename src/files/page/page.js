@@ -12,7 +12,7 @@
   const WHY = {
     reached: 'It is at its distance.',
     collision: 'It met the offset that comes from another part of the surface.',
-    limited: 'Held back: farther out, faces would invert, collapse or cross.',
+    limited: 'Held back: moving on would invert, collapse or cross faces.',
     outside_field: 'Its path left the grid of the distance field.',
     unused: 'No face uses it; it stays where it is.',
     mitred: 'It moved farther than the distance, to where the planes of its faces meet, so that these faces are at the distance.',
@@ -153,10 +153,15 @@
     return select;
   }
 
-  function addRange(title, attributes, onInput) {
-    make('label', byId('controls'), title, {for: attributes.id});
+  // titleAt(value): the title of the slider where it stands.
+  function addRange(titleAt, attributes, onInput) {
+    const label = make('label', byId('controls'), titleAt(attributes.value), {for: attributes.id});
     const range = make('input', byId('controls'), undefined, Object.assign({type: 'range'}, attributes));
-    range.addEventListener('input', () => { onInput(Number(range.value), range); update(); });
+    range.addEventListener('input', () => {
+      label.textContent = titleAt(Number(range.value));
+      onInput(Number(range.value));
+      update();
+    });
     return range;
   }
 
@@ -169,7 +174,7 @@
       const select = addChoice(names[which], which, ways);
       select.addEventListener('change', () => { looks[which] = select.value; update(); });
     }
-    addRange('transparency', {id: 'transparency', min: 0.05, max: 0.95, step: 0.05, value: 0.75}, value => { view.opacity = 1 - value; });
+    addRange(() => 'transparency', {id: 'transparency', min: 0.05, max: 0.95, step: 0.05, value: 0.75}, value => { view.opacity = 1 - value; });
     addSurfaceControls();
     const up = addChoice('up', 'up', ['x', 'y', 'z'].map((name, axis) => [axis, name]));
     up.addEventListener('change', () => view.setUp(Number(up.value)));
@@ -179,7 +184,7 @@
       share.disabled = looks.cutAxis < 0;
       update();
     });
-    const share = addRange('cut at', {id: 'cutAt', min: 0, max: 1, step: 0.005, value: looks.cutAt}, value => { looks.cutAt = value; });
+    const share = addRange(() => 'cut at', {id: 'cutAt', min: 0, max: 1, step: 0.005, value: looks.cutAt}, value => { looks.cutAt = value; });
     share.disabled = true;
     if (!facts.curves) addBox('edges', false, checked => { looks.edges = checked; });
     addFaults();
@@ -191,18 +196,14 @@
   function addSurfaceControls() {
     const count = data.surfaces.length;
     if (facts.layers && count > 1)
-      addRange('layers shown', {id: 'outermost', min: 0, max: count, step: 1, value: count}, (value, range) => {
-        looks.outermost = value;
-        range.setAttribute('aria-valuetext', `${value} of ${count}`);
-      });
+      addRange(value => `layers shown: ${value}`, {id: 'outermost', min: 0, max: count, step: 1, value: count}, value => { looks.outermost = value; });
     else if (count > 1) {
       looks.only = data.surfaces.map(() => true);
       data.surfaces.forEach((surface, i) => addBox(surface.name, true, checked => { looks.only[i] = checked; }));
     }
     if (isAlone || data.surfaces.every(each => each.mesh !== data.source.mesh)) return;
     const inPercent = value => `moved ${Math.round(100 * value)} %`;
-    const range = addRange(inPercent(1), {id: 'along', min: 0, max: 1, step: 0.01, value: 1}, value => {
-      range.setAttribute('aria-valuetext', byId('controls').querySelector('label[for=along]').textContent = inPercent(value));
+    const range = addRange(inPercent, {id: 'along', min: 0, max: 1, step: 0.01, value: 1}, value => {
       view.setShare(value);
       if (byId('picked').dataset.x !== undefined) notePlace(byId('picked').dataset);
     });

@@ -74,8 +74,8 @@ const PLACES = (function () {
     button.addEventListener('click', () => {
       const found = worst(facts, data, view, isSurfaceShown, visited), note = byId('message');
       if (!found) {
-        note.textContent = visited.length > 0 ? `No other place misses the distance by more than 1 % of it (${visited.length} visited). The next click starts again.` :
-            'All that is shown is within 1 % of the distance.';
+        note.textContent = visited.length === 0 ? 'All that is shown is within 1 % of the distance.' :
+            `No other place misses the distance by more than 1 % of it (${visited.length} visited). The next click starts again.`;
         visited = [];
         return;
       }

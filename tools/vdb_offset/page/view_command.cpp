@@ -45,8 +45,8 @@ struct ViewRequest {
 };
 
 /// Options that say how a file is read; all others of `check` are about RESULT.
-constexpr const char* kReading[] = {"--unit",    "--grid",  "--isovalue", "--deflection", "--angle",  "--cad-seconds",
-                                    "--flatten", "--close", "--threads",  "--html",       "--no-open"};
+constexpr const char* kReading[] = {"--unit",        "--grid",    "--isovalue", "--deflection", "--angle",
+                                    "--cad-seconds", "--flatten", "--close",    "--html",       "--no-open"};
 
 /// Reads the command line. None if it asked only for help, which is then printed.
 std::optional<ViewRequest> parse_view(int argc, const char* const* argv) {
@@ -64,7 +64,7 @@ std::optional<ViewRequest> parse_view(int argc, const char* const* argv) {
   require_measuring(line, request.check);
   if (made.output.empty())
     if (const auto other = line.given_besides(kReading))
-      throw UsageError(fmt::format("{}: expected a RESULT as well, as this says how it was made", *other));
+      throw UsageError(fmt::format("{}: expected a RESULT as well, as this says how it is measured", *other));
   return request;
 }
 
