@@ -15,6 +15,7 @@
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/view_file.h"
 #include "vdb_offset/io/volume_file.h"
+#include "vdb_offset/scene.h"
 
 namespace vdb_offset::tool {
 namespace {
