@@ -45,6 +45,8 @@ macro(vdb_offset_find_dependencies component)
     find_package(ZLIB REQUIRED)
     find_package(EXPAT REQUIRED)
     vdb_offset_find_library(vdb_offset_zstd zstd.h zstd)
+    # Debian's package of libzip for CMake asks for programs that are in other packages.
+    vdb_offset_find_library(vdb_offset_libzip zip.h zip)
   elseif(${component} STREQUAL openmesh)
     find_package(OpenMesh REQUIRED)
   endif()

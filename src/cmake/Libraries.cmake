@@ -41,7 +41,7 @@ endfunction()
 set(engine_public OpenVDB::openvdb TBB::tbb)
 set(engine_needs fmt::fmt vdb_offset_gmp vdb_offset_mpfr muparser::muparser)
 set(files_public vdb_offset_engine)
-set(files_needs EXPAT::EXPAT ZLIB::ZLIB vdb_offset_zstd)
+set(files_needs EXPAT::EXPAT ZLIB::ZLIB vdb_offset_zstd vdb_offset_libzip)
 set(openmesh_public vdb_offset_engine OpenMeshCore)
 
 if(BUILD_SHARED_LIBS)
@@ -120,7 +120,7 @@ if(BUILD_SHARED_LIBS)
 else()
   # Static, a program needs all that the library does.
   set(pc_libraries "-lvdb_offset_files -lvdb_offset_engine -lmpfr -lgmp")
-  set(pc_requires "Imath fmt expat zlib libzstd muparser")
+  set(pc_requires "Imath fmt expat zlib libzstd libzip muparser")
 endif()
 # From where the file itself lies, so that what is installed may be moved, or packed.
 cmake_path(SET pc_dir NORMALIZE /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig)

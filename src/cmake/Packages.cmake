@@ -70,7 +70,7 @@ zlib1g-dev, libfmt-dev, libgmp-dev, libmpfr-dev, libmuparser-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libopenmesh-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvdb-offset-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libexpat1-dev, libzstd-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libexpat1-dev, libzip-dev, libzstd-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "offset meshes and keep their topology (C++ library)
 ${about}
 .

@@ -143,8 +143,8 @@ TEST_CASE("3mf: archives that are damaged are refused", "[3mf][io]") {
     change(items[item]);
     return zip_file(items);
   };
-  check_refused("PK", "a.3mf, byte 2: expected a ZIP archive, got the end of the file");
-  check_refused(std::string(100, 'x'), "the end of a ZIP archive's directory");
+  check_refused("PK", "a.3mf: expected a ZIP archive, got 'Not a zip archive'");
+  check_refused(std::string(100, 'x'), "a.3mf: expected a ZIP archive, got 'Not a zip archive'");
   check_refused(zip_file({}), "expected a part _rels/.rels (a 3MF package), got none");
   check_refused(changed(1, [](ZipItem& item) { item.bytes = "<Relationships/>"; }),
                 "_rels/.rels: expected a relation to a 3D model, got none");
@@ -152,22 +152,46 @@ TEST_CASE("3mf: archives that are damaged are refused", "[3mf][io]") {
                 "expected a part '/3D/3dmodel.model' in the package, got none");
   check_refused(zip_file({good[0], good[1], good[2], good[2]}), "expected one part '3D/3dmodel.model', got two");
   check_refused(changed(2, [](ZipItem& item) { item.told_crc = 0x1234; }),
-                "3D/3dmodel.model: expected bytes of the checksum 00001234, got");
+                "3D/3dmodel.model: expected bytes that can be unpacked, got 'CRC error'");
   check_refused(changed(2, [](ZipItem& item) { item.packed = "\xff garbage"; }),
-                "expected deflated bytes, got 'invalid");
+                "expected bytes that can be unpacked, got 'Zlib error: data error'");
   check_refused(changed(2, [](ZipItem& item) { item.packed = deflated(item.bytes).substr(0, 60); }),
-                "expected deflated bytes to their end");
+                "expected bytes that can be unpacked, got 'CRC error'");
   check_refused(changed(2, [](ZipItem& item) { item.told_size = 10; }), "expected 10 bytes when unpacked, got more");
   check_refused(changed(2, [&](ZipItem& item) { item.told_size = static_cast<std::uint32_t>(model.size() + 1); }),
                 "bytes when unpacked, got");
   check_refused(changed(2, [](ZipItem& item) { item.told_size = 0xfffffff0; }),
                 "expected a size that deflated bytes can have, got 4294967280 bytes");
   check_refused(changed(2, [](ZipItem& item) { item.deflated = false, item.told_size = 3; }),
-                "expected 3 stored bytes");
+                "expected 3 bytes when unpacked, got more");
   std::string overlapping = zip_file(good);
   const std::size_t directory = overlapping.find("PK\1\2"), second = overlapping.find("PK\1\2", directory + 1);
   overlapping.replace(second + 42, 4, overlapping.substr(directory + 42, 4));
-  check_refused(overlapping, "expected an entry apart from others");
+  check_refused(overlapping, "_rels/.rels: expected bytes that can be unpacked");
+}
+
+TEST_CASE("3mf: directories that ask for more than there is are refused", "[3mf][io]") {
+  const std::string file = zip_file({{"a", std::string(1000, 'a'), false, false, true}});
+  const std::size_t directory = file.find("PK\1\2"), end = file.find("PK\6\6");
+  // Room for a million million entries.
+  std::string many = file;
+  many.replace(end + 24, 16, raw(std::uint64_t{1} << 40) + raw(std::uint64_t{1} << 40));
+  check_refused(many, "expected the end of a directory of at most 1048576 bytes, got 1099511627776 entries in");
+  std::string large = file;
+  large.replace(end + 40, 8, raw(std::uint64_t{1} << 30));
+  check_refused(large, "expected the end of a directory of at most 1048576 bytes, got 1 entries in 1073741824");
+  // An end in each comment, for which the directory would be read anew.
+  const std::string plain = zip_file({{"a", "a"}}), last = plain.substr(plain.find("PK\5\6"));
+  std::string ends = plain;
+  for (int i = 0; i < 20; ++i) ends += last;
+  check_refused(ends, "expected the end of a directory of at most");
+  // Entries that are the same bytes, of which each would be a copy.
+  const std::string entry = file.substr(directory, end - directory);
+  std::string same = file.substr(0, directory) + entry + entry + entry;
+  same += "PK\5\6" + std::string(4, '\0') + raw(std::uint16_t{3}) + raw(std::uint16_t{3}) +
+          raw(static_cast<std::uint32_t>(3 * entry.size())) + raw(static_cast<std::uint32_t>(directory)) +
+          std::string(2, '\0');
+  check_refused(same, "a.3mf: a: expected entries apart from each other");
 }
 
 TEST_CASE("3mf: a bomb takes no memory before it is refused", "[3mf][io]") {

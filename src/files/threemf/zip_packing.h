@@ -3,36 +3,23 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bytes/chunked_output.h"
 
 namespace vdb_offset::io {
 
-// How a ZIP archive holds the bytes of an entry.
-inline constexpr std::uint16_t kStored = 0, kDeflated = 8;
-
-/// The contents of an entry as the archive holds them: all pieces in a row.
+/// The contents of an entry as the archive holds them.
 struct Packed {
-  std::uint16_t method = kDeflated;
+  std::uint16_t method = 0;  ///< As the format numbers them.
   std::uint32_t crc = 0;
-  std::uint64_t size = 0, packed = 0;  ///< Bytes, before and after.
-  std::vector<std::string> pieces;
+  std::uint64_t size = 0;  ///< Bytes before.
+  std::string bytes;
 };
 
 /// Packs pieces in parallel, each on its own, so that the bytes do not depend on the number of threads.
 /// \throw OutOfBudget
 Packed pack(const std::string& where, const Pieces& contents, std::uint16_t method);
-
-/// Unpacks deflated bytes that are to be `size`. Takes no memory for bytes that do not come.
-/// \throw InvalidInput if they are others, OutOfBudget; `where` begins the message
-std::string unpack(const std::string& where, std::string_view packed, std::uint64_t size);
-
-/// The first bytes of what unpack() makes, `most` at most.
-std::string unpack_beginning(const std::string& where, std::string_view packed, std::size_t most);
-
-std::uint32_t crc_of(std::string_view bytes);
 
 /// An entry of a new archive.
 struct NewEntry {
