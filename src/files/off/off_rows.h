@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bytes/scanner.h"
+#include "document/rows.h"
 #include "vdb_offset/io/mesh_file.h"
 
 /// The rows of an OFF file, for those who write other rows of the same kind.
