@@ -197,9 +197,9 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
   read_common(keywords, options);
   keywords.read("collision", options.collision,
                 std::array{std::pair{"limit", Collision::Limit}, std::pair{"merge", Collision::Merge}});
-  keywords.read("corners", options.corners,
-                std::array{std::pair{"miter", std::optional(Corners::Miter)},
-                           std::pair{"round", std::optional(Corners::Round)}});
+  keywords.read(
+      "corners", options.corners,
+      std::array{std::pair{"miter", std::optional(Corners::Miter)}, std::pair{"round", std::optional(Corners::Round)}});
   keywords.read("solver", options.solver,
                 std::array{std::pair{"closest", Solver::Closest}, std::pair{"eikonal", Solver::Eikonal}});
   keywords.read("border", options.border,

@@ -124,9 +124,7 @@ class CadDocument : public Document {
       throw InvalidOption(
           fmt::format("{}: expected a face from 1 to {}, got '{}'", source.path, mesh_->faces.size(), selector.name));
     const char* const kind = selector.by == Selector::By::Name ? "name" : "color";
-    if (known.empty())
-      throw InvalidOption(
-          fmt::format("{} has no {}s: '{}'", source.path, kind, selector.name));
+    if (known.empty()) throw InvalidOption(fmt::format("{} has no {}s: '{}'", source.path, kind, selector.name));
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
     throw InvalidOption(fmt::format("{}: expected a {} among {}, got '{}'", source.path, kind,

@@ -112,10 +112,10 @@ void require_known(const MeshFile& mesh, const Labels& labels, const Selector& s
   const auto& known = group ? labels.groups : labels.materials;
   if (known.contains(selector.name)) return;
   const char* const kind = group ? "group" : "material";
-  throw InvalidOption(
-      known.empty() ? fmt::format("{} has no {}s: '{}'", mesh.path, kind, selector.name)
-                    : fmt::format("{}: expected a {} among {}, got '{}'", mesh.path, kind,
-                                  nearest_names(selector.name, {known.begin(), known.end()}), selector.name));
+  throw InvalidOption(known.empty()
+                          ? fmt::format("{} has no {}s: '{}'", mesh.path, kind, selector.name)
+                          : fmt::format("{}: expected a {} among {}, got '{}'", mesh.path, kind,
+                                        nearest_names(selector.name, {known.begin(), known.end()}), selector.name));
 }
 
 /// Marks the faces that a file lists, either by a 0 or 1 for each face or by their indices.

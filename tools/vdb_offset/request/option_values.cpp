@@ -160,7 +160,8 @@ double parse_miter_limit(const std::string& text) {
 }
 
 double parse_strict_faces(const std::string& text) {
-  return parse_number("--strict-faces", text.ends_with('%') ? text.substr(0, text.size() - 1) : text, "a percentage of 0 or more", -std::numeric_limits<double>::denorm_min(),
+  return parse_number("--strict-faces", text.ends_with('%') ? text.substr(0, text.size() - 1) : text,
+                      "a percentage of 0 or more", -std::numeric_limits<double>::denorm_min(),
                       std::numeric_limits<double>::max());
 }
 

@@ -42,8 +42,8 @@ std::string in_file_units(const std::string& option, const std::string& text,
   if (!given || !value) return text;
   const std::optional<double> of_file = file_unit();
   require(of_file.has_value(),
-          fmt::format("{}: '{}': the file does not state its unit; add --unit mm if its numbers are millimetres", option,
-                      text));
+          fmt::format("{}: '{}': the file does not state its unit; add --unit mm if its numbers are millimetres",
+                      option, text));
   return *given == *of_file ? number : fmt::format("{}", *value * *given / *of_file);
 }
 

@@ -159,8 +159,7 @@ void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> 
       may_go_farther ? walls_at_edge(parts_, options_.border) : std::vector<MiterWalls>();
   std::optional<MiterFinder<ClosestQuery>> miters;
   if (on_creases) {
-    miters.emplace(*query_, corners_, options_.miter_limit, obstacles(), std::span<const MiterWalls>(walls),
-                   exact());
+    miters.emplace(*query_, corners_, options_.miter_limit, obstacles(), std::span<const MiterWalls>(walls), exact());
     on_crease_ = miters->on_crease();
   }
   for (std::size_t i = 0; i < marched.size(); ++i) {

@@ -80,10 +80,9 @@ void refuse(const GridPlan& plan, const Surface& surface, const Reach& farthest,
   const std::string why = max_memory > 0 && plan.bytes > max_memory
                               ? fmt::format("more than the {:.0f} MiB that --max-memory allows", mib(max_memory))
                               : fmt::format("and is more than {:.0f} voxels across", kMaxVoxelsAcross);
-  throw OutOfBudget(fmt::format("plan: the run needs about {:.0f} MiB with voxels of {:.6g}, {}: {}", mib(plan.bytes),
-                                plan.voxel_size, why,
-                                fitting > 0 ? fmt::format("--voxel-size {:.6g} would fit", fitting)
-                                            : "the mesh itself does not fit"));
+  throw OutOfBudget(fmt::format(
+      "plan: the run needs about {:.0f} MiB with voxels of {:.6g}, {}: {}", mib(plan.bytes), plan.voxel_size, why,
+      fitting > 0 ? fmt::format("--voxel-size {:.6g} would fit", fitting) : "the mesh itself does not fit"));
 }
 
 VoxelSize choose(double median_edge, double diagonal, double d) {
