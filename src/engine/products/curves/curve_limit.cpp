@@ -112,6 +112,15 @@ class CurveLimiter {
     return miter && share_[p] == 1 && displacement_[p] == Vec2d(miter->displacement[0], miter->displacement[1]);
   }
 
+  /// Gives a point at the end of its miter the path that it had before: at a share of a miter that is longer than the
+  /// distance it would be beyond that, and not mitred. Returns false if it is at the end of none.
+  bool give_up_miter(std::uint32_t p) {
+    const Vec3d& path = paths_.displacement[p];
+    if (!is_mitred(p) || displacement_[p] == Vec2d(path[0], path[1])) return false;
+    displacement_[p] = {path[0], path[1]};
+    return true;
+  }
+
   /// The displacement that a point will be handed back with. Faults are looked for at exactly that: where two curves
   /// share a part of the front, the last bit decides whether their segments meet.
   Vec3d rounded_displacement(std::uint32_t p) const {
@@ -236,7 +245,10 @@ class CurveLimiter {
       ++statistics_.rounds;
       const bool all_the_way = round + 1 == kMostPulls;
       const Indices faulty = faults_.faulty_points();
-      for (const auto p : faulty) share_[p] *= all_the_way ? 0 : kPull;
+      for (const auto p : faulty) {
+        if (all_the_way) share_[p] = 0;
+        else if (!give_up_miter(p)) share_[p] *= kPull;
+      }
       move(faulty);
     }
     // The faults that are left are between pulled points and others: those follow.
