@@ -40,9 +40,11 @@ double value(vtkDataSetAttributes* attributes, const char* name, std::size_t i) 
   return array->GetTuple1(static_cast<vtkIdType>(i));
 }
 
-OffsetResult offset_of(const Polygons& mesh, double distance, std::vector<std::uint8_t> only = {}) {
+OffsetResult offset_of(const Polygons& mesh, double distance, std::vector<std::uint8_t> only = {},
+                       std::optional<Corners> corners = {}) {
   OffsetOptions options;
   options.distance = distance;
+  options.corners = corners;
   options.only = std::move(only);
   options.keep_face_errors = options.keep_paths = true;
   return offset(mesh.view(), options);
@@ -106,9 +108,10 @@ TEST_CASE("states: curves and paths are lines", "[states][vtk]") {
 }
 
 TEST_CASE("states: each face's error is that of the report, face by face", "[states]") {
-  // Of a box with 3 x 3 pairs of triangles a side, the middle ones are at the distance, and the others are off.
+  // Of a box with 3 x 3 pairs of triangles a side, the middle ones are at the distance, and the others, at round
+  // corners, are off.
   const Polygons mesh = shapes::box({1, 1, 1}, 3, true);
-  const OffsetResult result = offset_of(mesh, 0.1);
+  const OffsetResult result = offset_of(mesh, 0.1, {}, Corners::Round);
   REQUIRE(result.face_errors.size() == mesh.face_count());
   double sum = 0, area = 0;
   std::size_t exact = 0;
@@ -125,6 +128,7 @@ TEST_CASE("states: each face's error is that of the report, face by face", "[sta
   CHECK(sum / area == Approx(result.statistics.faces.mean).epsilon(0.15));
   CheckOptions check;
   check.distance = 0.1;
+  check.corners = Corners::Round;
   check.keep_face_errors = true;
   const CheckResult found = check_offset(mesh.view(), result.positions, check);
   for (std::size_t f = 0; f < mesh.face_count(); ++f)

@@ -51,6 +51,12 @@ TEST_CASE("metric: a cube goes to the box whose planes are as far as their axes"
     }
     options = axis_options(0.1, 0.3);
     options.collision = collision;
+    const OffsetResult mitred = offset(cube.view(), options);
+    for (std::size_t v = 0; v < cube.positions.size(); ++v)
+      for (int k = 0; k < 3; ++k)
+        if (const double p = cube.positions[v][k]; std::abs(p) == 0.5)
+          CHECK(mitred.positions[v][k] == Approx(p < 0 ? -0.5 - (k == 2 ? 0.3 : 0.1) : 0.5 + (k == 2 ? 0.3 : 0.1)));
+    options.corners = Corners::Round;
     const OffsetResult out = offset(cube.view(), options);
     CHECK(test::share(out, VertexState::Reached) == 1);
     for (std::size_t v = 0; v < cube.positions.size(); ++v) {
@@ -69,7 +75,8 @@ TEST_CASE("metric: a cube goes to the box whose planes are as far as their axes"
 TEST_CASE("metric: every vertex is on the ellipsoids around the surface", "[metric][oracle]") {
   const Polygons mesh = shapes::bumpy_sphere(1, 0.1, 2, 5, 4);
   for (const auto& [xy, z] : {std::pair{0.05, 0.15}, {-0.06, -0.02}}) {
-    const OffsetOptions options = axis_options(xy, z);
+    OffsetOptions options = axis_options(xy, z);
+    options.corners = Corners::Round;
     const OffsetResult result = offset(mesh.view(), options);
     CHECK(test::share(result, VertexState::Reached) > 0.99);
     CHECK(result.statistics.limit.left.total() == 0);

@@ -288,6 +288,7 @@ TEST_CASE("miter: round corners have the faces at the distance where vertices ca
   }
   OffsetOptions options;
   options.distance = -0.05;
+  options.corners = Corners::Round;
   const OffsetResult result = offset(ringed.view(), options);
   for (std::size_t f = 0; f < ringed.face_count(); ++f) {
     const Vec3d normal = newell_normal(ringed.view(), f).unit();
@@ -305,6 +306,7 @@ TEST_CASE("miter: where fronts meet, round corners keep to their paths", "[miter
   const Polygons gear = shapes::gear(18, 0.8, 1, 0.3, 0.3, 6);
   OffsetOptions options;
   options.distance = -0.12;
+  options.corners = Corners::Round;
   const OffsetResult result = offset(gear.view(), options);
   CHECK(result.statistics.limit.before.total() > 0);
   CHECK(in_state(result, VertexState::Reached) >= 0.998 * static_cast<double>(gear.positions.size()));

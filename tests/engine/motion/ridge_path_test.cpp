@@ -18,6 +18,7 @@ OffsetResult merged(PolygonView mesh, double distance, double voxel_size) {
   OffsetOptions options;
   options.distance = distance;
   options.collision = Collision::Merge;
+  options.corners = Corners::Round;
   options.grid.voxel_size = voxel_size;
   return offset(mesh, options);
 }
@@ -222,6 +223,7 @@ TEST_CASE("ridges: obstacles are met as on any way", "[ridges]") {
   OffsetOptions options;
   options.distance = -0.1;
   options.collision = Collision::Merge;
+  options.corners = Corners::Round;
   options.obstacles = inside.view();
   const OffsetResult result = offset(cube.view(), options);
   for (const Vec3d& p : result.positions) CHECK(p.length() >= 0.2 * 0.98);
@@ -246,6 +248,7 @@ TEST_CASE("ridges: a square's points arrive on the smaller square, open or close
   };
   OffsetOptions options;
   options.collision = Collision::Merge;
+  options.corners = Corners::Round;
   const Distances distance(-0.3);
   const Polygons closed = square(true);
   const OffsetResult result = std::move(offset_curves(closed.view(), {&distance, 1}, options).front());

@@ -130,9 +130,13 @@ TEST_CASE("check: faces are proven to be within a tolerance, and no others are",
   const Polygons box = shapes::box(Vec3d(1), 6, true);
   OffsetOptions options;
   options.distance = 0.1;
-  const std::vector<Vec3d> positions = offset(box.view(), options).positions;
   CheckOptions check;
   check.distance = 0.1;
+  check.tolerance_share = 0.01;
+  CHECK(check_offset(box.view(), offset(box.view(), options).positions, check).certified->certified == 1);
+  options.corners = check.corners = Corners::Round;
+  check.tolerance_share = {};
+  const std::vector<Vec3d> positions = offset(box.view(), options).positions;
   CHECK_FALSE(check_offset(box.view(), positions, check).certified);
   // Of the 6 by 6 quads on each side, 4 by 4 do not touch an edge of the box, where faces are nearer.
   check.tolerance_share = 0.01;
@@ -143,7 +147,7 @@ TEST_CASE("check: faces are proven to be within a tolerance, and no others are",
   CHECK(by_share->there == 1);
   CHECK(by_share->worst_left > 0.1);
   CHECK(by_share->worst_left < 1);
-  check = {.distance = Distances(0.1), .tolerance_length = 0.09};
+  check = {.distance = Distances(0.1), .corners = Corners::Round, .tolerance_length = 0.09};
   const auto by_length = check_offset(box.view(), positions, check).certified;
   REQUIRE(by_length);
   CHECK(by_length->length == 0.09);

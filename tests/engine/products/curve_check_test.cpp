@@ -28,9 +28,11 @@ Curves l_shape() {
   return curve_through(points, true);
 }
 
-OffsetResult offset_by(const Curves& curves, double distance) {
+OffsetResult offset_by(const Curves& curves, double distance, std::optional<Corners> corners = {}) {
   const Distances distances(distance);
-  return offset_curves(curves.view(), {&distances, 1}, {}).front();
+  OffsetOptions options;
+  options.corners = corners;
+  return offset_curves(curves.view(), {&distances, 1}, options).front();
 }
 
 CheckResult check_at(const Curves& curves, const std::vector<Vec3d>& positions, double distance) {
@@ -185,7 +187,7 @@ TEST_CASE("curve ends: those near each other are told, and closed by a straight 
   CHECK(curves.corners.back() == curves.corners.front());
   CHECK(open_curves(curves.view()).empty());
   // Closed, it has an inside, and its offset goes all around it.
-  const OffsetResult result = offset_by(curves, 0.1);
+  const OffsetResult result = offset_by(curves, 0.1, Corners::Round);
   for (std::size_t p = 0; p < curves.positions.size(); ++p) CHECK(result.achieved[p] == Approx(0.1));
   CHECK(result.positions[0][0] > 1.05);
   CHECK(result.positions[40][0] > 1.05);

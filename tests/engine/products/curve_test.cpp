@@ -58,6 +58,15 @@ TEST_CASE("curves: outward is away from what is enclosed, whichever way curves r
   }
 }
 
+TEST_CASE("curves: a square is a larger or smaller square by default", "[curves][miter]") {
+  const Curves square = curve_through({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, true);
+  for (const double d : {0.1, -0.1}) {
+    const Distances distance(d);
+    const OffsetResult result = offset_curves(square.view(), {&distance, 1}, {}).front();
+    for (std::size_t p = 0; p < 4; ++p) CHECK((result.positions[p] - square.positions[p] * (1 + d)).length() <= 1e-12);
+  }
+}
+
 TEST_CASE("curves: ends that are apart by rounding alone are one", "[curves]") {
   // The sine of a whole turn is no zero.
   constexpr std::size_t kPoints = 41;
@@ -147,7 +156,9 @@ TEST_CASE("curves: nothing crosses that did not before, in slits, stars and curv
       comb(4, 0.2, 0.05), comb(3, 0.02, 0.3), star(200, [](double a) { return 1 + 0.5 * std::sin(9 * a); }),
       star(300, [&](double) { return any(random); }), star(90, [](double a) { return std::cos(2 * a + 0.1); })};
   for (const Curves& shape : shapes)
-    for (const double d : {0.01, -0.01, 0.08, -0.08, 0.3}) require_honest(shape, offset_of(shape, d));
+    for (const double d : {0.01, -0.01, 0.08, -0.08, 0.3})
+      for (const Corners corners : {Corners::Round, Corners::Miter})
+        require_honest(shape, offset_of(shape, d, corners));
 }
 
 TEST_CASE("curves: where two curves share a piece of the front, what is judged is what comes out",
@@ -222,6 +233,7 @@ TEST_CASE("curves: each point has its own distance, 0 stays put", "[curves]") {
   each.reserve(120);
   for (int p = 0; p < 120; ++p) each.push_back(p < 20 ? 0 : 0.05 + 0.04 * std::sin(kTurn * p / 120));
   OffsetOptions options;
+  options.corners = Corners::Round;
   const Distances distances{std::vector<double>(each)};
   const OffsetResult result = offset_curves(circle.view(), {&distances, 1}, options).front();
   require_honest(circle, result);
@@ -299,6 +311,7 @@ TEST_CASE("curves: points that are only rounded have reached their distance, poi
   const auto offset_with = [&](const Distances& distances, int digits) {
     OffsetOptions options;
     options.precision = {.kind = Precision::Kind::Digits, .digits = digits};
+    options.corners = Corners::Round;
     return offset_curves(curves.view(), {&distances, 1}, options).front();
   };
   for (const int digits : {4, 5, 6, 7, 8})

@@ -134,6 +134,28 @@ TEST_CASE("layers: on a plane, heights and volumes are exact", "[layers]") {
   }
 }
 
+TEST_CASE("layers: corners are round unless miters are asked for", "[layers][miter]") {
+  const Polygons cube = shapes::box(Vec3d(1), 3, false);
+  const std::vector<Distances> heights = growing(0.02, 1.2, 3);
+  OffsetOptions round, mitred;
+  round.corners = Corners::Round;
+  mitred.corners = Corners::Miter;
+  const LayersResult as_grown = grow_layers(cube.view(), heights, {}),
+                     of_round = grow_layers(cube.view(), heights, round),
+                     of_miters = grow_layers(cube.view(), heights, mitred);
+  for (std::size_t k = 1; k <= heights.size(); ++k) {
+    const std::vector<Vec3d> positions = as_grown.stacks.surface(k), on_planes = of_miters.stacks.surface(k);
+    CHECK(positions == of_round.stacks.surface(k));
+    const double height = heights[k - 1][0];
+    for (std::size_t v = 0; v < cube.positions.size(); ++v) {
+      const Vec3d& from = cube.positions[v];
+      CHECK((positions[v] - from).length() == Approx(height));
+      for (int i = 0; i < 3; ++i)
+        if (std::abs(from[i]) == 0.5) CHECK(std::abs(on_planes[v][i]) == Approx(0.5 + height).epsilon(1e-9));
+    }
+  }
+}
+
 TEST_CASE("layers: on a sphere and in a tube, heights are exact and cells fill what is between", "[layers][oracle]") {
   const auto [mesh, heights] =
       GENERATE(table<Polygons, std::vector<Distances>>({{shapes::icosphere(0.5, 4), growing(0.002, 1.2, 8)},

@@ -20,9 +20,11 @@ using test::share;
 
 namespace {
 
+/// With every vertex at the distance.
 OffsetOptions by(double distance) {
   OffsetOptions options;
   options.distance = distance;
+  options.corners = Corners::Round;
   return options;
 }
 
@@ -149,6 +151,22 @@ TEST_CASE("offset: cube, outward, keeps corners and edges in place", "[offset][n
       if (std::abs(cube.positions[v][k]) < 0.25 - 1e-9) CHECK(std::abs(way[k]) < 1e-12);  // no drift along a face
   }
   check_guarantee(cube.view(), result, 0.1, 37);
+}
+
+TEST_CASE("offset: a cube is a larger or smaller cube by default", "[offset][miter]") {
+  for (const int divisions : {1, 5})
+    for (const double distance : {0.1, -0.1}) {
+      const Polygons cube = shapes::box(Vec3d(1), divisions, true);
+      const OffsetResult result = offset(cube.view(), {.distance = distance});
+      double worst = 0;
+      for (std::size_t v = 0; v < cube.positions.size(); ++v)
+        for (int k = 0; k < 3; ++k) {
+          const double from = cube.positions[v][k], side = std::copysign(0.5 + distance, from);
+          if (std::abs(from) == 0.5) worst = std::max(worst, std::abs(result.positions[v][k] - side));
+        }
+      CHECK(worst <= 1e-12);
+      CHECK(result.statistics.faces.worst <= 1e-9);
+    }
 }
 
 TEST_CASE("offset: torus, both ways", "[offset][no_races]") {
@@ -352,11 +370,11 @@ TEST_CASE("offset: vertices at one position stay together", "[offset]") {
   // A cube of six separate sides, as exported with hard edges.
   const Polygons cube = shapes::box(Vec3d(1), 6, false);
   const Polygons sides = test::torn(cube);
-  const OffsetResult whole = offset(cube.view(), by(0.1)), split = offset(sides.view(), by(0.1));
+  const OffsetResult whole = offset(cube.view(), {.distance = 0.1}), split = offset(sides.view(), {.distance = 0.1});
   REQUIRE(split.positions.size() == sides.positions.size());
   for (std::size_t c = 0; c < sides.corners.size(); ++c)
     CHECK(split.positions[sides.corners[c]] == whole.positions[cube.corners[c]]);
-  OffsetOptions apart = by(0.1);
+  OffsetOptions apart = {.distance = 0.1};
   apart.weld.enabled = false;
   const OffsetResult torn = offset(sides.view(), apart);
   CHECK_FALSE(torn.positions == split.positions);  // each face then moves on its own

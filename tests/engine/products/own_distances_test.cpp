@@ -93,6 +93,7 @@ TEST_CASE("own distances: each face of a cube goes to its own plane, and others 
 TEST_CASE("own distances: with round corners, and with distances of both signs, vertices have the mean") {
   const Polygons cube = divided_cube(1);
   OffsetOptions options;
+  options.corners = Corners::Round;
   options.distance = of_sides(cube, {0.5, 0.5, 0.5, 0.5, 0.5, 1.1});
   const OffsetResult round = offset(cube.view(), options);
   for (std::size_t v = 0; v < cube.positions.size(); ++v)

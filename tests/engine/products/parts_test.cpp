@@ -81,6 +81,7 @@ bool is_confirmed(const Polygons& mesh, const OffsetResult& result, const Offset
 TEST_CASE("uneven: every vertex is at its own distance, on its own side", "[uneven][oracle]") {
   const Polygons mesh = shapes::bumpy_sphere(1, 0.1, 2, 3, 4);
   OffsetOptions options;
+  options.corners = Corners::Round;
   options.distance = per_vertex(mesh, [](const Vec3d& p) {
     return p[0] > 0.2 ? 0.05 * p[0] : p[0] < -0.2 ? -0.04 : 0;
   });
@@ -150,6 +151,7 @@ TEST_CASE("several: one march serves all distances", "[several][oracle]") {
   const Polygons mesh = shapes::bumpy_sphere(1, 0.15, 2, 9, 4);
   const std::vector<Distances> distances = {0.05, -0.03, 0.1, 0.0};
   OffsetOptions options;
+  options.corners = Corners::Round;
   const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, options);
   REQUIRE(results.size() == 4);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -167,7 +169,7 @@ TEST_CASE("several: one march serves all distances", "[several][oracle]") {
   const std::vector<OffsetResult> of_sphere = offset_several(sphere.view(), distances, options);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     INFO(i);
-    OffsetOptions alone;
+    OffsetOptions alone = options;
     alone.distance = distances[i];
     CHECK(of_sphere[i].positions == offset(sphere.view(), alone).positions);
     if (i < 3) CHECK(of_sphere[i].statistics.straight_vertices == sphere.positions.size());
@@ -313,10 +315,16 @@ TEST_CASE("part: its edge meets the faces that stay in a plane of symmetry, too"
     halved.close_face();
     options.only.push_back(whole.wall[f]);
   }
-  const OffsetResult result = offset(halved.view(), options);
-  for (std::uint32_t i = 0; i <= 8; ++i)
-    CHECK((result.positions[2 * 16 + i] - whole.at(i, 3.25, 6.25)).length() < 1e-8);
-  CHECK(is_confirmed(halved, result, options));
+  for (const Corners corners : {Corners::Round, Corners::Miter}) {
+    options.corners = corners;
+    const OffsetResult result = offset(halved.view(), options);
+    const bool mitred = corners == Corners::Miter;
+    const double wider = mitred ? 0.25 / std::cos(std::numbers::pi / 16) : 0.25;
+    // In the plane itself there is no edge that could be mitred.
+    for (std::uint32_t i = mitred ? 1 : 0; i <= (mitred ? 7 : 8); ++i)
+      CHECK((result.positions[2 * 16 + i] - whole.at(i, 3 + wider, 6 + wider)).length() < 1e-8);
+    CHECK(is_confirmed(halved, result, options));
+  }
 }
 
 TEST_CASE("part: a border that is fixed stays, one that is free goes with the part", "[part]") {

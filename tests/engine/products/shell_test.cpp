@@ -117,6 +117,18 @@ TEST_CASE("shell: a flat patch becomes a box of that height", "[shell]") {
         Approx(-9 * 0.25).epsilon(1e-14));
 }
 
+TEST_CASE("shell: by default a cube has a larger cube around it", "[shell][miter]") {
+  const Shell shell = solid_of(shapes::box(Vec3d(1), 1, false), 0.1);
+  std::size_t outer = 0;
+  for (const Vec3d& p : shell.polygons.positions) {
+    const double side = std::abs(p[0]) > 0.55 ? 0.6 : 0.5;
+    outer += side > 0.5;
+    for (int k = 0; k < 3; ++k) CHECK(std::abs(std::abs(p[k]) - side) <= 1e-12);
+  }
+  CHECK(outer == 8);
+  CHECK(shell.facts.volume == Approx(1.2 * 1.2 * 1.2 - 1));
+}
+
 TEST_CASE("shell: a rim stops before what stands in its way", "[shell]") {
   // A plate, and the tip of a triangle over its border, in the rim's way but not in that of the plate.
   Polygons mesh = quad();

@@ -90,14 +90,18 @@ Polygons turned_about(Polygons mesh) {
 
 TEST_CASE("symmetry: borders in a plane stay in it to the last bit, whatever faces do there", "[symmetry]") {
   const Polygons mesh = test::oblique_tube();
-  for (const double distance : {0.1, -0.1, 0.37}) {
-    const OffsetResult result = offset(mesh.view(), options_at(distance));
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) CHECK(result.positions[v][2] == mesh.positions[v][2]);
-    CHECK(test::share(result, VertexState::Reached) == 1);
-    CHECK(test::judge(mesh.view(), result, distance, 1, false).worst_reached <= 1e-6);
-    CHECK(result.statistics.borders.planes.size() == 2);
-    CHECK(result.statistics.borders.held_vertices == 8);
-  }
+  for (const double distance : {0.1, -0.1, 0.37})
+    for (const Corners corners : {Corners::Round, Corners::Miter}) {
+      OffsetOptions options = options_at(distance);
+      options.corners = corners;
+      const OffsetResult result = offset(mesh.view(), options);
+      for (std::size_t v = 0; v < mesh.positions.size(); ++v) CHECK(result.positions[v][2] == mesh.positions[v][2]);
+      const bool is_farther = corners == Corners::Miter && distance > 0;
+      CHECK(test::share(result, is_farther ? VertexState::Mitred : VertexState::Reached) == 1);
+      CHECK(test::judge(mesh.view(), result, distance, 1, false).worst_reached <= 1e-6);
+      CHECK(result.statistics.borders.planes.size() == 2);
+      CHECK(result.statistics.borders.held_vertices == 8);
+    }
 }
 
 TEST_CASE("symmetry: all layers of such borders, and their sides", "[symmetry][layers]") {
@@ -287,7 +291,9 @@ TEST_CASE("symmetry: vertices that stay in planes may slide within them", "[symm
       const double off = 0.006 * (static_cast<double>(dice()) / 4294967296.0 - 0.5);
       for (const std::size_t end : {v, v + 1}) strip.positions[end][k] += off;
     }
-  const OffsetResult result = offset(strip.view(), options_at(0.96));
+  OffsetOptions options = options_at(0.96);
+  options.corners = Corners::Round;
+  const OffsetResult result = offset(strip.view(), options);
   CHECK(result.statistics.borders.planes.size() == 2);
   CHECK(result.statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)] == strip.positions.size());
   for (std::size_t v = 0; v < strip.positions.size(); ++v) CHECK(result.positions[v][2] == strip.positions[v][2]);

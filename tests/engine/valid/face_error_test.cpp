@@ -41,7 +41,8 @@ TEST_CASE("face error: what miters put farther away is told apart", "[faces]") {
   for (int i = 0; i < kSteps; ++i)
     for (int j = 0; j < kSteps; ++j) sum += std::hypot(0.2, over(i), over(j)) / 0.2 - 1;
   CHECK(faces.farther == Approx(sum / kSteps / kSteps).epsilon(0.02));
-  CHECK(offset(shapes::box(Vec3d(2, 2, 2), 1, false).view(), {.distance = 0.2}).statistics.faces.farther == 0);
+  const OffsetOptions round{.distance = 0.2, .corners = Corners::Round};
+  CHECK(offset(shapes::box(Vec3d(2, 2, 2), 1, false).view(), round).statistics.faces.farther == 0);
 }
 
 TEST_CASE("face error: planes that no point is on are too far away", "[faces]") {

@@ -22,10 +22,13 @@ using namespace vdb_offset;
 
 namespace {
 
-OffsetResult limited(const Polygons& mesh, double distance, Collision collision = Collision::Limit) {
+/// With every vertex at the distance, unless other corners are asked for.
+OffsetResult limited(const Polygons& mesh, double distance, Collision collision = Collision::Limit,
+                     Corners corners = Corners::Round) {
   OffsetOptions options;
   options.distance = distance;
   options.collision = collision;
+  options.corners = corners;
   return offset(mesh.view(), options);
 }
 
@@ -112,7 +115,7 @@ Polygons cubes_at_an_edge() {
   return mesh;
 }
 
-/// Of a mesh's area, a third of each triangle to each of its corners: what has reached its distance.
+/// Of a mesh's area, a third of each triangle to each of its corners: what has reached its distance, or is mitred.
 double reached_area(const Polygons& mesh, const OffsetResult& result) {
   const Surface surface = build_surface(mesh.view(), {});
   double all = 0, reached = 0;
@@ -121,7 +124,9 @@ double reached_area(const Polygons& mesh, const OffsetResult& result) {
     const double third = (at(1) - at(0)).cross(at(2) - at(0)).length() / 6;
     all += 3 * third;
     for (const auto v : corners)
-      if (result.states[surface.representative[v]] == VertexState::Reached) reached += third;
+      if (const VertexState state = result.states[surface.representative[v]];
+          state == VertexState::Reached || state == VertexState::Mitred)
+        reached += third;
   }
   return reached / all;
 }
@@ -269,7 +274,7 @@ TEST_CASE("limit: the same bits for any number of threads", "[limit][invariant]"
   OffsetOptions one;
   one.distance = 0.3;
   one.threads = 1;
-  const OffsetResult alone = offset(mesh.view(), one), all = limited(mesh, 0.3);
+  const OffsetResult alone = offset(mesh.view(), one), all = offset(mesh.view(), {.distance = 0.3});
   CHECK(alone.positions == all.positions);
   CHECK(alone.states == all.states);
 }
@@ -375,12 +380,14 @@ TEST_CASE("limit: a tiny notch holds back nothing but itself", "[limit][no_races
   for (const double notch : {0.002, 0.02})
     for (const double distance : {2.6, 5.2, 13.0}) {
       const Polygons mesh = notched_plate(notch);
-      const OffsetResult result = limited(mesh, distance);
-      CAPTURE(notch, distance);
-      CHECK(check_offset(mesh.view(), result.positions, {.distance = distance}).valid());
-      CHECK(reached_area(mesh, result) > 0.99);
-      // With vertices left where they had slid: up to 37 %. Round corners alone: 19 %.
-      CHECK(result.statistics.faces.mean < 0.2);
+      for (const Corners corners : {Corners::Round, Corners::Miter}) {
+        const OffsetResult result = limited(mesh, distance, Collision::Limit, corners);
+        CAPTURE(notch, distance, corners == Corners::Miter);
+        CHECK(check_offset(mesh.view(), result.positions, {.distance = distance, .corners = corners}).valid());
+        CHECK(reached_area(mesh, result) > 0.99);
+        // With vertices left where they had slid: up to 37 %. Round corners alone: 19 %.
+        CHECK(result.statistics.faces.mean < (corners == Corners::Round ? 0.2 : 0.02));
+      }
     }
 }
 
@@ -615,7 +622,8 @@ TEST_CASE("limit: random scenes are valid and exact", "[limit][property][random]
     INFO("seed " << seed);
     const test::RandomScene scene = test::random_scene(seed);
     const OffsetResult result = limited(scene.mesh, scene.distance);
-    const CheckResult found = check_offset(scene.mesh.view(), result.positions, {.distance = scene.distance});
+    const CheckResult found =
+        check_offset(scene.mesh.view(), result.positions, {.distance = scene.distance, .corners = Corners::Round});
     CHECK(result.statistics.limit.left.total() == 0);
     CHECK(found.faults.total() == 0);
     CHECK(result.statistics.limit.crossings_near_source == found.crossings_near_source);

@@ -16,6 +16,13 @@ std::size_t short_vertices(const OffsetResult& result) {
   return count;
 }
 
+/// With round corners, as other results are no start for mitred ones.
+OffsetOptions round_corners() {
+  OffsetOptions options;
+  options.corners = Corners::Round;
+  return options;
+}
+
 Distances each(std::vector<double> numbers) { return Distances(std::move(numbers)); }
 
 }  // namespace
@@ -74,7 +81,7 @@ TEST_CASE("warm start: what was freed at a distance is free at less", "[warm_sta
   // Each of them folds on its own.
   const Polygons mesh = shapes::bumpy_sphere(1, 0.6, 2.5, 5, 4);
   const std::vector<Distances> distances = {-0.2, -0.4, -0.3};
-  const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, {});
+  const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, round_corners());
   for (std::size_t i = 0; i < 3; ++i) {
     INFO(i);
     const LimitStatistics& limit = results[i].statistics.limit;
@@ -92,7 +99,7 @@ TEST_CASE("warm start: what was freed at a distance is free at less", "[warm_sta
 TEST_CASE("warm start: what could not be freed is held back at less, too, and told", "[warm_start][several]") {
   const Polygons mesh = shapes::naca_wing("2412", 1, 1, 40, 10);
   const std::vector<Distances> distances = {-0.005, -0.01, -0.02};
-  const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, {});
+  const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, round_corners());
   CHECK(short_vertices(results[2]) > 0);
   for (std::size_t i = 0; i < 3; ++i) {
     INFO(i);
@@ -106,7 +113,7 @@ TEST_CASE("warm start: what could not be freed is held back at less, too, and to
     if (i == 2) continue;
     const LimitStatistics& limit = results[i].statistics.limit;
     CHECK(limit.followed_vertices > 0);
-    OffsetOptions alone;
+    OffsetOptions alone = round_corners();
     alone.distance = distances[i];
     CHECK(short_vertices(results[i]) < 1.2 * static_cast<double>(short_vertices(offset(mesh.view(), alone))));
   }
@@ -115,7 +122,7 @@ TEST_CASE("warm start: what could not be freed is held back at less, too, and to
 TEST_CASE("warm start: states are honest where much is held back and eased", "[warm_start][several][long]") {
   const Polygons mesh = shapes::gear(18, 0.8, 1, 0.3, 0.3, 6);
   const std::vector<Distances> distances = {-0.06, -0.08, -0.11, -0.11};  // the last two are equal
-  const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, {});
+  const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, round_corners());
   CHECK(short_vertices(results[2]) > 0);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     INFO(i);
@@ -137,7 +144,7 @@ TEST_CASE("warm start: uneven offsets, parts in front of others, and skins off t
     nearer.push_back(farther.back() * (0.7 + 0.2 * p[0]));
   }
   const std::vector<Distances> uneven = {each(nearer), each(farther)};
-  const std::vector<OffsetResult> skins = offset_several(bumpy.view(), uneven, {});
+  const std::vector<OffsetResult> skins = offset_several(bumpy.view(), uneven, round_corners());
   CHECK(skins[0].statistics.limit.followed_vertices > 0);
   for (std::size_t i = 0; i < 2; ++i) {
     INFO(i);
@@ -151,7 +158,7 @@ TEST_CASE("warm start: uneven offsets, parts in front of others, and skins off t
   }
 
   const Polygons plates = shapes::plates(1, 0.1, 0.2, 12);
-  OffsetOptions options;
+  OffsetOptions options = round_corners();
   for (std::size_t f = 0; f < plates.face_count(); ++f) {
     const auto face = plates.view().face(f);
     options.only.push_back(
@@ -163,7 +170,7 @@ TEST_CASE("warm start: uneven offsets, parts in front of others, and skins off t
     for (const Vec3d& p : result.positions) CHECK(p[2] <= 0.2 + 1e-12);
   }
 
-  options = {};
+  options = round_corners();
   options.off_source = true;
   const Polygons wing = shapes::naca_wing("2412", 1, 1, 40, 10);
   const std::vector<Distances> inward = {-0.005, -0.02};
