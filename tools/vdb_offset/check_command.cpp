@@ -97,7 +97,7 @@ void declare_measuring(CommandLine& line, CheckRequest& request) {
               made.miter_limit, parse_miter_limit);
   line.option("--precision", "N",
               "Significant digits of OFFSET's coordinates in text, for what counts as being there [all]",
-              made.write.digits, count_of("--precision", 1, kMostDigits));
+              made.write.digits, count_between("--precision", 1, kMostDigits));
   line.option("--weld", "MODE",
               "Vertices of SOURCE that count as one: 'auto', 'exact', 'none', or within TOL world units, as it was for "
               "the offset [auto]",
@@ -144,7 +144,7 @@ std::optional<CheckRequest> parse_check(int argc, const char* const* argv) {
       made.input);
   line.file("OFFSET", "Mesh or curves after", made.output);
   declare_measuring(line, request);
-  line.option("--threads", "N", "Threads; 0 takes all [0]", made.threads, count_of("--threads", 0, kMostThreads));
+  line.option("--threads", "N", "Threads; 0 takes all [0]", made.threads, count_between("--threads", 0, kMostThreads));
   line.option("--report", "FILE", "Write what is found as JSON", made.report);
   line.option("--states", "FILE",
               "Write state, target and achieved distance of every vertex, as found: .csv, or .vtp or .ply to colour by "

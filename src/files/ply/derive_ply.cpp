@@ -76,7 +76,7 @@ class PlyDeriver {
         in_sections(rows.header_with({derived.mesh().positions.size(), derived.face_count(), deriver->index_type_,
                                       deriver->adds_part_ ? "part" : nullptr}),
                     {})};
-    const auto add = [&](std::size_t items, std::function<void(std::string&, std::uint32_t)> append) {
+    const auto add = [&](std::size_t items, const std::function<void(std::string&, std::uint32_t)>& append) {
       parts.push_back(in_sections(
           {}, {{items, [=](std::string& bytes, std::size_t i) { append(bytes, static_cast<std::uint32_t>(i)); }}}));
     };

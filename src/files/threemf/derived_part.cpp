@@ -198,6 +198,7 @@ std::size_t DerivedObject::number_of(std::uint32_t v) const {
 
 std::vector<DerivedObject> split_by_objects(const DerivedMesh& derived, const std::vector<PlacedMesh>& meshes) {
   std::vector<DerivedObject> objects;
+  objects.reserve(meshes.size());
   for (const PlacedMesh& mesh : meshes) objects.push_back({mesh, {}, {}, {}});
   const auto object_of = [&](std::uint32_t face) -> DerivedObject& {
     return *std::prev(std::upper_bound(objects.begin(), objects.end(), derived.parent(face),

@@ -211,7 +211,7 @@ WrittenDocument ThreeMfDocument::derive(const SharedDerived& derived, const std:
     const Pieces pieces = derived_part(text, model, *derived, of_part, moved);
     replacements.push_back({parts_[p].entry, pack(parts_[p].label, pieces, parts_[p].entry->method)});
     if (p > 0 || names.volumes.empty()) continue;
-    const std::string settings = with_volumes(archive_.read(*names.settings), names, model, of_part);
+    std::string settings = with_volumes(archive_.read(*names.settings), names, model, of_part);
     replacements.push_back(
         {names.settings, pack(path_, {1, [&](std::size_t) { return settings; }}, names.settings->method)});
   }

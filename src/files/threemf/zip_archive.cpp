@@ -240,7 +240,7 @@ std::string ZipArchive::read(const ZipEntry& entry) const {
 
 std::string ZipArchive::read_beginning(const ZipEntry& entry, std::size_t most) const { return unpack(entry, most); }
 
-Pieces ZipArchive::with(std::vector<Replacement> replacements) const {
+Pieces ZipArchive::with(std::vector<Replacement>&& replacements) const {
   require_memory(bytes_.size(), path_);
   Changes changes(path_, bytes_, 0);
   for (auto& [entry, contents] : replacements) {

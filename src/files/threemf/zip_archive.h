@@ -48,7 +48,7 @@ class ZipArchive {
   };
   /// The archive with other contents in some entries; all others are copied as they are packed. \throw InvalidInput,
   /// OutOfBudget
-  Pieces with(std::vector<Replacement> replacements) const;
+  Pieces with(std::vector<Replacement>&& replacements) const;
 
  private:
   std::string label(const ZipEntry& entry) const;

@@ -57,7 +57,7 @@ void declare_batch(CommandLine& line, BatchRequest& request, bool& reports) {
                 "their endings]",
                 [&request](const std::string& text) { request.selection.push_back(text); });
   line.option("--jobs", "N", "Models at once; with --sshlogin, on each machine [one for each processor]", request.jobs,
-              count_of("--jobs", 1, kMostJobs));
+              count_between("--jobs", 1, kMostJobs));
   line.flag("--reports", "Keep the report of each model beside its output, as OUTPUT.json", reports);
   line.flag("--retry-failed", "Do models again that failed, too", request.retry_failed);
   line.option(
@@ -97,8 +97,8 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
       request.each.push_back(std::move(option));
   // A damaged model is not to hold up the others.
   if (!line.has("--cad-seconds")) request.each.push_back({"--cad-seconds", "60"});
-  require_rules(line.given(), {{{"--reports"}, OptionRule::Excludes, {"--report"}},
-                               {{"--slurm"}, OptionRule::Excludes, {"--sshlogin"}}});
+  require_rules(line.given(), {{{"--reports"}, OptionRule::Relation::Excludes, {"--report"}},
+                               {{"--slurm"}, OptionRule::Relation::Excludes, {"--sshlogin"}}});
   if (reports) request.each.push_back({"--report", "{model}{ending}.json"});
   if (line.has("--max-memory")) request.max_memory = draft.request.max_memory;
   request.config = line.config();

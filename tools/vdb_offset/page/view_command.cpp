@@ -59,7 +59,7 @@ std::optional<ViewRequest> parse_view(int argc, const char* const* argv) {
   line.option("--html", "FILE", "Write the page to FILE (.html) [a temporary file]", made.html);
   line.flag("--no-open", "Write the page, and do not open it", request.no_open);
   declare_measuring(line, request.check);
-  line.option("--threads", "N", "Threads; 0 takes all [0]", made.threads, count_of("--threads", 0, kMostThreads));
+  line.option("--threads", "N", "Threads; 0 takes all [0]", made.threads, count_between("--threads", 0, kMostThreads));
   if (!line.parse(argc, argv)) return std::nullopt;
   require_measuring(line, request.check);
   if (made.output.empty())

@@ -60,7 +60,7 @@ Examples:
   vdb_offset batch models bigger -d 1%                   a folder of models (vdb_offset batch --help))";
 
 std::span<const HelpTopic> help_topics() {
-  static const HelpTopic topics[] = {
+  static const HelpTopic kTopics[] = {
       {"distances",
        "Distances and corners",
        {"distance", "unit", "distance-from", "distance-of", "blend", "distance-xy", "distance-z", "fit", "clearance",
@@ -83,7 +83,7 @@ std::span<const HelpTopic> help_topics() {
        "The run",
        {"preset", "config", "threads", "max-memory", "voxel-size", "voxels-per-distance", "solver", "dry-run", "quiet",
         "verbose", "help", "version"}}};
-  return topics;
+  return kTopics;
 }
 
 }  // namespace vdb_offset::tool

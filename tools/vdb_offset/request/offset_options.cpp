@@ -55,7 +55,7 @@ void declare_distances(CommandLine& line, Draft& draft) {
       "--adaptivity", "X",
       "With --mode iso: how readily cells are merged where the surface is nearly flat, 0 (none) to 1 [triangles are "
       "merged where that changes nothing: where it is flat and nothing comes along]",
-      draft.iso.adaptivity, number_of("--adaptivity", "a number from 0 to 1", kBelowZero, 1));
+      draft.iso.adaptivity, number_between("--adaptivity", "a number from 0 to 1", kBelowZero, 1));
   line.option("--inside", "MODE",
               "With --mode iso: 'winding' decides what is inside of a mesh that is closed but for small holes, or has "
               "edges of four faces and more; 'never' takes such a mesh as open, with a surface on all its sides "
@@ -94,7 +94,7 @@ void declare_tolerance(CommandLine& line, Draft& draft) {
               request.tolerance, parse_tolerance, request.text);
   line.option("--max-faces", "N",
               "With --tolerance: make no more faces than this [20 times as many as INPUT has, at least a million]",
-              request.tolerance.most_faces, count_of("--max-faces", 1, std::numeric_limits<int>::max()));
+              request.tolerance.most_faces, count_between("--max-faces", 1, std::numeric_limits<int>::max()));
   line.option("--refined-source", "FILE", "With --tolerance: write INPUT with the faces that OUTPUT has",
               request.refined_source);
   line.option("--map", "FILE", "With --tolerance: write where in INPUT each vertex lies that was added, as text",
@@ -146,7 +146,7 @@ void declare_products(CommandLine& line, Draft& draft) {
   line.option("--layers", "N",
               "Grow N layers of cells: with --first-height or --total-thickness, and --growth; OUTPUT is .vtu, .msh, "
               ".cgns, .su2, a folder called polyMesh, or a mesh for each layer",
-              draft.layers.count, count_of("--layers", 1, kMostLayers));
+              draft.layers.count, count_between("--layers", 1, kMostLayers));
   line.option("--first-height", "A", "Height of the first layer, as --distance", [&](const std::string& text) {
     draft.layers.first = parse_distance_of("--first-height", text, request);
   });
@@ -154,7 +154,7 @@ void declare_products(CommandLine& line, Draft& draft) {
     draft.layers.total = parse_distance_of("--total-thickness", text, request);
   });
   line.option("--growth", "R", "Each layer's height by that of the one below [1.2]", draft.layers.growth,
-              number_of("--growth", "a number above 0, up to 10", 0, 10));
+              number_between("--growth", "a number above 0, up to 10", 0, 10));
   line.option("--heights", "FILE", "A file of heights above the wall, one a line, each as --distance",
               draft.layers.heights);
   line.flag("--structured",
@@ -199,7 +199,7 @@ void declare_level_set(CommandLine& line, Request& request) {
   line.option("--grid", "NAME", ".vdb files: the grid whose surface is the mesh [the only level set]",
               request.level_set.grid);
   line.option("--isovalue", "V", ".vdb files: the value on that surface; needed if the grid is not a level set [0]",
-              request.level_set.isovalue, number_of("--isovalue", "a number", -kAny, kAny));
+              request.level_set.isovalue, number_between("--isovalue", "a number", -kAny, kAny));
 }
 
 void declare_cad(CommandLine& line, Request& request) {
@@ -210,10 +210,10 @@ void declare_cad(CommandLine& line, Request& request) {
       request.deflection, parse_deflection);
   line.option("--angle", "A",
               "CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",
-              request.angle, number_of("--angle", "a number above 0, up to 90", 0, 90));
+              request.angle, number_between("--angle", "a number above 0, up to 90", 0, 90));
   line.option("--cad-seconds", "S",
               "CAD models: how long OpenCASCADE may take for one model in all [300; in a batch 60]",
-              request.cad_seconds, number_of("--cad-seconds", "a number above 0", 0, kAny));
+              request.cad_seconds, number_between("--cad-seconds", "a number above 0", 0, kAny));
 }
 
 namespace {
@@ -224,7 +224,7 @@ void declare_cad_output(CommandLine& line, Request& request) {
       "--fit-tolerance", "TOL",
       "With an OUTPUT that is a CAD model (.step .stp .brep): how far fitted faces may be from the offset, world "
       "units [a ten-thousandth of the distance]",
-      request.fit_tolerance, number_of("--fit-tolerance", "a number above 0", 0, kAny));
+      request.fit_tolerance, number_between("--fit-tolerance", "a number above 0", 0, kAny));
   line.flag("--faceted", "With an OUTPUT that is a CAD model: write a solid of triangles where no other can be made",
             request.faceted);
 }
@@ -233,9 +233,9 @@ void declare_cad_output(CommandLine& line, Request& request) {
 void declare_method(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.option("--voxel-size", "H", "Voxel size of the direction field, world units [automatic: about D]",
-              request.grid.voxel_size, number_of("--voxel-size", "a number above 0", 0, kAny));
+              request.grid.voxel_size, number_between("--voxel-size", "a number above 0", 0, kAny));
   line.option("--voxels-per-distance", "N", "Voxel size of the direction field as D / N",
-              request.grid.voxels_per_distance, number_of("--voxels-per-distance", "a number above 0", 0, kAny));
+              request.grid.voxels_per_distance, number_between("--voxels-per-distance", "a number above 0", 0, kAny));
   line.option(
       "--collision", "MODE",
       "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
@@ -277,9 +277,9 @@ void declare_files(CommandLine& line, Draft& draft) {
       });
   line.option("--precision", "N",
               "Significant digits of moved coordinates in text, 1 to 17 [as many as read back to the same number]",
-              request.write.digits, count_of("--precision", 1, kMostDigits));
+              request.write.digits, count_between("--precision", 1, kMostDigits));
   line.option("--threads", "N", "Threads; 0 takes all; the result is the same for any number [0]", request.threads,
-              count_of("--threads", 0, kMostThreads));
+              count_between("--threads", 0, kMostThreads));
   line.option("--max-memory", "SIZE", "Refuse work that would need more, as in 4G [80 % of what is free]",
               request.max_memory, parse_size);
   line.option("--report", "FILE", "Write what happened as JSON", request.report);

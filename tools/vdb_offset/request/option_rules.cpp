@@ -133,12 +133,12 @@ void require_rules(const GivenNames& given, const std::vector<OptionRule>& rules
     for (const std::string& option : options) {
       if (!is_given(option)) continue;
       const auto count = std::count_if(others.begin(), others.end(), is_given);
-      if (relation == OptionRule::Excludes && count > 0)
+      if (relation == OptionRule::Relation::Excludes && count > 0)
         throw UsageError(
             fmt::format("{} and {} exclude each other", option, *std::find_if(others.begin(), others.end(), is_given)));
-      require(relation != OptionRule::NeedsAnyOf || count > 0,
+      require(relation != OptionRule::Relation::NeedsAnyOf || count > 0,
               fmt::format("{} needs {}", option, fmt::join(others, " or ")));
-      require(relation != OptionRule::NeedsOneOf || count == 1,
+      require(relation != OptionRule::Relation::NeedsOneOf || count == 1,
               fmt::format("{} needs one of {}", option, fmt::join(others, ", ")));
     }
 }

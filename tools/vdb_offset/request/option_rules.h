@@ -11,7 +11,7 @@ namespace vdb_offset::tool {
 
 /// What each of some options needs or excludes. A name alone is the option with any value, "--mode iso" with that one.
 struct OptionRule {
-  enum Relation { NeedsAnyOf, NeedsOneOf, Excludes };
+  enum class Relation { NeedsAnyOf, NeedsOneOf, Excludes };
   std::vector<std::string> options;
   Relation relation;
   std::vector<std::string> others;

@@ -34,14 +34,14 @@ std::size_t parse_word(const char* option, const std::string& text, std::initial
 double parse_number(const char* option, const std::string& text, const char* expected, double above, double most);
 
 /// Parses such numbers.
-inline auto number_of(const char* option, const char* expected, double above, double most) {
+inline auto number_between(const char* option, const char* expected, double above, double most) {
   return [=](const std::string& text) { return parse_number(option, text, expected, above, most); };
 }
 
 /// A whole number, in decimal digits.
 int parse_count(const char* option, const std::string& text, int least, int most);
 /// Parses such numbers.
-inline auto count_of(const char* option, int least, int most) {
+inline auto count_between(const char* option, int least, int most) {
   return [=](const std::string& text) { return parse_count(option, text, least, most); };
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes miters back that come with faults. Those that give way are set aside first. Of each fault's mitred corners, the
-// ones with the least area around them go back to their paths, until no fault has a mitred corner. With round corners
-// all miters near a remaining fault are given up for good, as those do not come of miters. Since miters may have been
-// in each other's way alone, the others are tried again in rounds, a third of them at a time, and few are tried one by
-// one; whichever comes to be at a fault goes back. Those set aside are tried last. Which ones go together follows from
-// a hash of their numbers, and not from threads. Faults that come of no miter are left to limit().
+// ones with the least area around them go back to their paths, until no fault has a mitred corner. Near a remaining
+// fault, which does not come of miters, those are given up for good that are at the distance without. Since miters may
+// have been in each other's way alone, the others are tried again in rounds, a third of them at a time, and few are
+// tried one by one; whichever comes to be at a fault goes back. Those set aside are tried last. Which ones go together
+// follows from a hash of their numbers, and not from threads. Faults that come of no miter are left to limit().
 #include "products/offset/faulty_miters.h"
 
 #include <algorithm>
@@ -30,24 +30,28 @@ constexpr std::uint64_t kTrials = 6, kTriedEvery = 3;
 // If so few are left then, each is tried by itself. For speed; not measured.
 constexpr std::size_t kMostSingly = 100;
 
-// How far around a fault, along edges and in distances, round corners have no miters. See docs/dev/tuning.md.
+// How far around a fault, along edges and in distances, no vertex has a miter that is at the distance without. See
+// docs/dev/tuning.md.
 constexpr double kAround = 2;
 
 /// Takes back what is faulty of miters, and tries again what may have been taken back for others.
 class MiterJudge {
  public:
-  MiterJudge(FaultFinder& faults, const Surface& surface, PreparedMesh::Marched& marched)
+  MiterJudge(FaultFinder& faults, const Surface& surface, Corners corners, PreparedMesh::Marched& marched)
       : faults_(faults), surface_(surface), mitred_(marched.mitred), paths_(marched.paths) {
-    for (const Miter& miter : marched.miters)
+    for (const Miter& miter : marched.miters) {
       if (miter.gives_way) giving_way_.push_back(miter.vertex);
+      if (corners == Corners::Miter && miter.state != VertexState::Reached) farther_.push_back(miter.vertex);
+    }
   }
 
-  /// Takes all miters back within a length, along edges, of faults that do not come of miters. They are not tried
-  /// again.
+  /// Takes the miters back whose vertices are at the distance without, within a length, along edges, of faults that do
+  /// not come of miters. They are not tried again.
   void give_up_around_faults(double length) {
     const Indices faulty = faults_.faulty_vertices();
     if (faulty.empty()) return;
-    given_up_ = vertices_within(length, faulty);
+    const Indices within = vertices_within(length, faulty);
+    std::set_difference(within.begin(), within.end(), farther_.begin(), farther_.end(), std::back_inserter(given_up_));
     faults_.move_to_ends(paths_, mitred_.take_back(given_up_, paths_));
     take_faulty_back();
   }
@@ -170,6 +174,7 @@ class MiterJudge {
   Paths& paths_;
   Indices given_up_;    // vertices that are not to be mitred again; sorted
   Indices giving_way_;  // mitred vertices that do; sorted
+  Indices farther_;     // vertices whose miters end farther away than the distance; sorted
 };
 
 }  // namespace
@@ -177,10 +182,10 @@ class MiterJudge {
 void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, Corners corners, double distance,
                              PreparedMesh::Marched& marched) {
   if (marched.mitred.empty()) return;
-  MiterJudge judge(faults, surface, marched);
+  MiterJudge judge(faults, surface, corners, marched);
   judge.set_aside();
   judge.take_faulty_back();
-  if (corners == Corners::Round) judge.give_up_around_faults(kAround * distance);
+  judge.give_up_around_faults(kAround * distance);
   judge.try_all_again();
   judge.try_those_set_aside();
 }

@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <numeric>
 #include <optional>
@@ -156,6 +157,15 @@ class ResultMaker {
     if (!has_to_be_valid()) draft.faults.reset();
   }
 
+  /// Whether any vertex is farther than its distance, for its faces to be there.
+  static bool goes_farther(const Draft& draft) {
+    constexpr double kRounding = 1e-6;  // of the distance, as of what has reached it
+    const std::span<const double> farther = draft.marched.mitred.farther();
+    for (std::size_t v = 0; v < farther.size(); ++v)
+      if (farther[v] > (1 + kRounding) * std::abs(draft.distances[v])) return true;
+    return false;
+  }
+
   static bool needs_mending(const Draft& draft) {
     const auto& states = draft.marched.paths.state;
     return draft.faults &&
@@ -168,11 +178,10 @@ class ResultMaker {
   void make_valid(Draft& draft, const ProgressCallback& progress, const WarmStart* start, WarmStart* to_start) const {
     if (!draft.faults) return;
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
-    draft.statistics.limit = limit(
-        *draft.faults,
-        {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths, &draft.marched.mitred,
-         mesh_.corners() == Corners::Miter && !draft.marched.mitred.empty() && draft.distances.at_corner().empty()},
-        progress, start, to_start);
+    draft.statistics.limit = limit(*draft.faults,
+                                   {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths,
+                                    &draft.marched.mitred, goes_farther(draft) && draft.distances.at_corner().empty()},
+                                   progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     if (options_.keep_face_errors) draft.face_faults = draft.faults->of_faces(mesh_.mesh().face_count());
     draft.faults.reset();

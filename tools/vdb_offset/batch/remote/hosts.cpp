@@ -8,11 +8,11 @@ namespace vdb_offset::tool {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789", kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
-constexpr std::size_t kMostDigits = 5;  // of a port, or of models at once on one machine
+constexpr std::size_t kMostPortDigits = 5;  // of a port, or of models at once on one machine
 
 /// Above 0.
 bool is_number(std::string_view text) {
-  return !text.empty() && text.size() <= kMostDigits && text.find_first_not_of(kDigits) == std::string_view::npos &&
+  return !text.empty() && text.size() <= kMostPortDigits && text.find_first_not_of(kDigits) == std::string_view::npos &&
          text.find_first_not_of('0') != std::string_view::npos;
 }
 
