@@ -138,5 +138,5 @@ def zigzag(place):
     limit = () if place.sanitized else ('--max-memory', '200M')
     run = place.run('zigzag.txt', 'out.txt', '-d', '0.05', *limit)
     place.ended_well(run, 0)
-    place.check(b'more than 1000000 pairs of segments meet' in run.err + run.out, 'expected to be told of them', run)
+    place.check(b'more than 1000000 segment pairs' in run.err + run.out, 'expected to be told of them', run)
     held_to(place, run, 200 * MIB)

@@ -45,7 +45,7 @@ LONG_LINES = {
     'distance': (1, ['box.obj', 'o.obj', '-d', LONG], '--distance: '),
     'distance by axis': (1, ['box.obj', 'o.obj', '--distance-xy', LONG, '--distance-z', '1'], '--distance-xy: '),
     'part': (1, ['box.obj', 'o.obj', *DISTANCE, '--only', LONG], "--only: expected 'group=NAME'"),
-    'part that is not there': (1, ['box.obj', 'o.obj', *DISTANCE, '--only', 'group=' + LONG], 'without any'),
+    'part that is not there': (1, ['box.obj', 'o.obj', *DISTANCE, '--only', 'group=' + LONG], 'has no groups'),
     'plane': (1, ['box.obj', 'o.obj', *DISTANCE, '--symmetry', LONG], '--symmetry: expected'),
     'list': (1, ['box.obj', 'o.obj', *DISTANCE, '--mode', 'iso', '--transport', LONG], '--transport: expected'),
     'option': (1, ['box.obj', 'o.obj', *DISTANCE, '--' + LONG], 'unknown option --aaa'),
