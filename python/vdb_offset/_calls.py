@@ -96,7 +96,7 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
     >>> import numpy as np
     >>> tent = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0.5]], float)
     >>> sides = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    >>> refined = offset_to_tolerance(tent, sides, 0.1, "1%")
+    >>> refined = offset_to_tolerance(tent, sides, 0.1, "1%", corners="round")
     >>> len(refined.positions) > 5, refined.statistics["certified"]["certified"] > 0.999
     (True, True)
     """

@@ -196,10 +196,11 @@ class Offsets(BesideTheCommand):
     def test_check_finds_what_the_command_finds(self):
         run = self.run_command
         vertices, faces = shape_of("gear", run)
-        run("shape.obj", "made.obj", "--distance=0.5%", "--precision", "17")
-        run("check", "shape.obj", "made.obj", "--distance=0.5%", "--tolerance", "1%", "--precision", "17", "--report",
+        run("shape.obj", "made.obj", "--distance=0.5%", "--corners", "round", "--precision", "17")
+        run("check", "shape.obj", "made.obj", "--distance=0.5%", "--corners", "round", "--tolerance", "1%", "--precision", "17", "--report",
             "report.json")
-        found = vdb_offset.check(vertices, faces, run.read("made.obj")[0], "0.5%", tolerance="1%", precision=17)
+        found = vdb_offset.check(vertices, faces, run.read("made.obj")[0], "0.5%", tolerance="1%", corners="round",
+                                 precision=17)
         self.check_report(found.statistics, run.report(), ["source", "offset"])
         self.assertLess(found.statistics["certified"]["certified"], 1)
 

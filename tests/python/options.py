@@ -23,7 +23,7 @@ def functions():
 class Options(unittest.TestCase):
     def test_signatures_list_every_option(self):
         parameters = inspect.signature(vdb_offset.offset).parameters
-        self.assertEqual(parameters["corners"].default, "round")
+        self.assertIsNone(parameters["corners"].default)
         self.assertIn("miter", str(parameters["corners"].annotation))
         self.assertEqual([name for name in parameters if name not in _options.OPTIONS], ["vertices", "faces", "distance"])
         for function in functions():
@@ -101,9 +101,8 @@ class Options(unittest.TestCase):
         cases = [(vdb_offset.offset, box, {"clearance": 0.1}, "clearance needs obstacles"),
                  (vdb_offset.offset, box, {"clearance": 0}, "clearance needs obstacles"),
                  (vdb_offset.check, (CUBE, QUADS, CUBE), {"clearance": 0.1}, "clearance needs obstacles"),
-                 (vdb_offset.offset, box, {"miter_limit": 4}, "miter_limit needs corners='miter'"),
                  (vdb_offset.offset, box, {"miter_limit": 4, "corners": "round"}, "miter_limit needs corners='miter'"),
-                 (vdb_offset.offset_curves, (square, faces[:, [0, 1]], 0.1), {"miter_limit": 4}, "miter_limit needs"),
+                 (vdb_offset.offset_curves, (square, faces[:, [0, 1]], 0.1), {"corners": "round", "miter_limit": 4}, "miter_limit needs"),
                  (vdb_offset.offset, box, {"voxel_size": 0.1, "voxels_per_distance": 2}, "voxel size or voxels per"),
                  (vdb_offset.offset, box, {"distance_z": 0.2, "obstacles": near}, "distance_z and obstacles exclude"),
                  (vdb_offset.check, (CUBE, QUADS, CUBE, 0.1), {"distance_z": 0.2, "obstacles": near}, "distance_z and obs"),
