@@ -152,16 +152,16 @@ std::string planes_in_words(std::span<const SymmetryPlane> planes) {
 }
 
 void add_orientation(const MeshFacts& facts, Orient orient, Remarks& remarks) {
-  const std::string pieces =
-      facts.closed_components == 1
-          ? "the only closed piece is"
-          : fmt::format("{} of {} closed pieces are", facts.inside_out_components, facts.closed_components);
+  const bool is_one = facts.closed_components == 1;
+  const std::string pieces = is_one ? "the only closed piece is inside out"
+                                    : fmt::format("{} of {} closed pieces are inside out", facts.inside_out_components,
+                                                  facts.closed_components);
   if (facts.inside_out_components > 0 && orient == Orient::Keep)
-    remarks.add(Gravity::Wrong, pieces +
-                                    " inside out: positive distances shrink it. To enlarge it: --orient "
-                                    "fix-direction-only");
+    remarks.add(Gravity::Wrong, fmt::format("{0}: positive distances shrink {1}. To enlarge {1}: --orient "
+                                            "fix-direction-only",
+                                            pieces, is_one ? "it" : "them"));
   else if (facts.inside_out_components > 0)
-    remarks.add(Gravity::Detail, pieces + " inside out: treated as flipped, its faces stay as they are");
+    remarks.add(Gravity::Detail, pieces + ": treated as flipped; the faces stay as they are");
   if (facts.enclosed_components > 0)
     remarks.add(Gravity::Wrong,
                 fmt::format("{} of {} closed pieces lie inside another and point outward: positive distances enlarge "
