@@ -101,10 +101,10 @@ Polygons opened(const Polygons& whole, std::size_t axis, bool at_both, bool turn
 
 }  // namespace
 
-TEST_CASE("command: layers that end on the wrong side of what is open are told of the option that turns them",
+TEST_CASE("command: layers that end on the wrong side of an open surface: a warning names the option that turns them",
           "[command][layers][long]") {
   const ShellCommand shell;
-  const std::string told = "if faces point the wrong way, ";
+  const std::string told = "If faces point the wrong way: ";
   const auto coverage = [&] {
     return nlohmann::json::parse(shell.slurp(shell.file("r.json")))["layers"]["coverage"].get<double>();
   };
@@ -120,21 +120,20 @@ TEST_CASE("command: layers that end on the wrong side of what is open are told o
     const std::string to = " o.vtu --report r.json --layers 4 ", total = "--total-thickness " + thickness;
     CHECK_THAT(shell(name + "_in.obj" + to + total).out, Catch::Contains(told + "--total-thickness -" + thickness));
     CHECK(coverage() < 0.5);
-    // As told it is done, and there is no more to tell; nor is there where faces point outward.
+    // That option does it, and the warning is gone; nor is there one where faces point outward.
     for (const std::string& arguments : {"_in.obj" + to + "--total-thickness -" + thickness, "_out.obj" + to + total}) {
       CHECK_THAT(shell(name + arguments).out, !Catch::Contains(told));
       CHECK(coverage() > 0.99);
     }
     CHECK_THAT(shell(name + "_out.obj" + to + "--total-thickness -" + thickness).out,
-               Catch::Contains(told + "--total-thickness " + thickness + " goes there"));
+               Catch::Contains(told + "--total-thickness " + thickness));
     // Inward is what was meant, where there is room.
     CHECK_THAT(shell(name + "_in.obj" + to + "--total-thickness 0.001").out, !Catch::Contains(told));
   }
   CHECK_THAT(shell("tube_in.obj o.vtu --layers 4 --first-height 0.4").out,
-             Catch::Contains(told + "--first-height -0.4 goes there"));
+             Catch::Contains(told + "--first-height -0.4"));
   std::ofstream(shell.file("heights.txt")) << "0.5\n1.5\n";
-  CHECK_THAT(shell("tube_in.obj o.vtu --heights heights.txt").out,
-             Catch::Contains(told + "heights below 0 goes there"));
+  CHECK_THAT(shell("tube_in.obj o.vtu --heights heights.txt").out, Catch::Contains(told + "heights below 0"));
 }
 
 TEST_CASE("command: distances of each vertex, as an expression and from files", "[command]") {
