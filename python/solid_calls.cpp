@@ -191,16 +191,21 @@ py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, c
     Hollow hollow;
   };
   const Made made = run([&]() -> Made {
-    const auto at = [&](double d) {
-      options.distance = d;
-      IsoResult result = make_iso_surface(source.view(), options);
+    const auto at = [&](double d, double share_before, double share_after) {
+      IsoOptions own = options;
+      own.distance = d;
+      own.progress = [&](Stage stage, double share) {
+        return options.progress(stage, share_before + (share_after - share_before) * share);
+      };
+      IsoResult result = make_iso_surface(source.view(), own);
       require_valid(result.statistics, text, start);
       if (!result.statistics.is_signed)
         throw InvalidInput("iso_shell: expected a mesh that has an inside, got an open one");
       return result;
     };
-    Made all{at(outward), {}, {}};
-    if (inward) all.cavity = at(*inward);
+    const double first = inward ? 0.5 : 1;
+    Made all{at(outward, 0, first), {}, {}};
+    if (inward) all.cavity = at(*inward, first, 1);
     all.hollow = hollow_of(source.view(), options, outward, all.surface, all.cavity ? &*all.cavity : nullptr);
     require_apart(all.hollow, all.surface.statistics, text, start);
     return all;

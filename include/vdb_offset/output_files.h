@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 
@@ -28,6 +29,11 @@ class VDB_OFFSET_API OutputFiles {
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
   ~OutputFiles();
+
+  /// Has writers report how much of what they write is done, as Stage::Write, if this is to hold so many files.
+  void report_to(ProgressCallback progress, std::size_t files);
+  /// What the writer of the next file on this thread reports its own share to. Empty if nobody asked for it.
+  static ProgressCallback progress_of_next();
 
   /// Adds a new file for `target`, under a temporary name until commit(), which it returns. `path` is what messages
   /// call it. \throw WriteError
@@ -51,6 +57,8 @@ class VDB_OFFSET_API OutputFiles {
   Sync sync_;
   std::vector<File> files_;
   std::vector<Temporary> folders_;
+  ProgressCallback progress_;
+  std::size_t expected_files_ = 1, begun_files_ = 0;
 };
 
 /// The file that is made or replaced for a path, absolute: a link stays a link, and what it leads to is replaced,

@@ -18,8 +18,10 @@ inline constexpr std::size_t kStageCount = 11;
 /// Name of a stage as reports and progress bars spell it.
 VDB_OFFSET_API const char* name(Stage stage);
 
-/// Called with a stage and the share of it that is done, 0..1. Return false to cancel: the call that works
-/// then throws Cancelled. Calls never overlap, but come from whichever thread has something to report.
+/// Called with the stage at hand and the share of the whole call that is done: from 0 to 1, never less than before, and
+/// 1 at the end. How stages share it follows from the plan of the run, so that it grows about evenly in time. Return
+/// false to cancel: the call that works then throws Cancelled. Calls never overlap, but come from whichever thread has
+/// something to report.
 using ProgressCallback = std::function<bool(Stage, double)>;
 
 /// Called before the memory of a run is taken, with the bytes that it is estimated to hold at most. May wait until

@@ -20,7 +20,7 @@ numbers of the arrays are, lengths may have one of their own: "0.2mm".
 
 Errors are classes of this module's: `InvalidInput` and `InvalidOption` are ValueErrors, `OutOfBudget` is a MemoryError,
 `InvalidResult`, of an iso-surface that is not valid, is a RuntimeError with the surface's `statistics`, and all of them
-are `Error`. `progress` is called with the name of a stage and the share of it that is done, 0 to 1; if
+are `Error`. `progress` is called with the name of the stage at hand and the share of the call that is done, 0 to 1; if
 it returns False the call raises `Cancelled`, and what it raises itself is raised by the call. So is Ctrl-C. `reserve`
 is called with the bytes that the run is estimated to hold at most, before it takes them. It may wait until there is room
 for them; Ctrl-C ends the call once it returns. It cancels and raises as `progress` does.

@@ -252,7 +252,8 @@ def iso_surface_several(vertices: np.ndarray, faces: Faces, distances: Sequence[
     """
     keywords, progress = given(iso_surface_several, options)
     wanted = lengths("distances", distances, options.get("unit"))
-    return [Iso(**_core.iso_surface(vertices, faces, distance, keywords, progress)) for distance in wanted]
+    return [Iso(**_core.iso_surface(vertices, faces, distance, keywords, _options.part(progress, i, len(wanted))))
+            for i, distance in enumerate(wanted)]
 
 
 @takes(_options.ISO + ["inner"])

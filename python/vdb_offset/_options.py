@@ -14,7 +14,7 @@ from . import _core
 
 Distance = Union[float, str, np.ndarray]
 Faces = Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]
-Progress = Optional[Callable[[str, float], Any]]
+Progress = Optional[Union[Callable[[str, float], Any], str]]
 Reserve = Optional[Callable[[int], Any]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -99,7 +99,8 @@ OPTIONS: Dict[str, Option] = {
                       "called with the bytes that the run is estimated to hold, before it takes them; may wait until\n"
                       "there is room for them; False cancels (see the module)"),
     "progress": Option(Progress, None,
-                       "called with a stage and the share of it that is done; False cancels (see the module)"),
+                       "called with the stage at hand and the share of the call that is done; False cancels (see the\n"
+                       "module); \"tqdm\": a bar by that package"),
 }
 
 _HEIGHTS = ["count", "first", "total", "growth"]
@@ -152,7 +153,37 @@ def given(function: Callable[..., Any], options: Dict[str, Any]) -> Tuple[Dict[s
     unit = options.get("unit")
     keywords = {name: length(name, value, unit, OPTIONS[name].length) for name, value in options.items()
                 if value is not None and name not in ("progress", "unit")}
-    return keywords, options.get("progress")
+    progress = options.get("progress")
+    if isinstance(progress, str):
+        if progress != "tqdm":
+            raise ValueError(f"progress: expected a function or 'tqdm', got '{progress}'")
+        progress = bar(function.__name__)
+    return keywords, progress
+
+
+def bar(what: str) -> Callable[[str, float], None]:
+    """A progress callback that draws a bar, with the time left.
+
+    :raises ImportError: without the package tqdm
+    """
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        raise ImportError("progress='tqdm' needs the package tqdm: pip install tqdm, or apt install python3-tqdm") from None
+    drawn = tqdm(total=1, desc=what, bar_format="{desc}: {percentage:3.0f} %|{bar}| {elapsed}, {remaining} left{postfix}")
+
+    def progress(stage: str, share: float) -> None:
+        drawn.set_postfix_str(stage, refresh=False)
+        drawn.update(share - drawn.n)
+        if share == 1:
+            drawn.close()
+
+    return progress
+
+
+def part(progress: Progress, number: int, count: int) -> Progress:
+    """The callback for one of so many calls that are one to the user."""
+    return progress and (lambda stage, share: progress(stage, (number + share) / count))
 
 
 #: In micrometres, which are whole numbers: a quotient of two is the nearest one to what is meant, as the command has it.

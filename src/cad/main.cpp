@@ -13,6 +13,7 @@
 #include <new>
 
 #include "messages/message_channel.h"
+#include "messages/progress.h"
 #include "vdb_offset/api.h"
 #include "worker/guard.h"
 #include "worker/requests.h"
@@ -63,6 +64,7 @@ Reply reply_to(Requests& requests, const io::Message& asked) {
 void serve() {
   io::MessageChannel messages{io::OpenFile(io::kWorkerMessages)};
   messages.send(static_cast<std::uint32_t>(io::CadReply::Version), VDB_OFFSET_VERSION, {});
+  io::report_progress_to(io::kWorkerMessages);
   Requests requests;
   while (true) {
     const io::Message asked = messages.receive({}, kMostOfRequest);

@@ -127,7 +127,7 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Ca
     write.positions.assign(positions.begin(), positions.end());
     write.triangles = model->mesh().triangles;
   }
-  CadWritten written = model->write(write);
+  CadWritten written = model->write(write, how.progress);
   if (written.made == CadMade::Nothing)
     throw NoCadModel(
         fmt::format("{}: expected faces of a CAD model that can be offset, got none{}{} (--faceted writes "

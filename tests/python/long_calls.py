@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls that take a while: what they tell and ask, what ends them, and what goes on meanwhile."""
 import contextlib
+import io
 import os
 import signal
 import subprocess
@@ -63,6 +64,33 @@ class LongCalls(unittest.TestCase):
         self.assertGreaterEqual(len(told), 5)
         self.assertTrue(all(isinstance(stage, str) and 0 <= share <= 1 for stage, share in told))
 
+    def test_shares_are_of_the_whole_call(self):
+        calls = {
+            "offset": lambda **options: self.offset(**options),
+            "iso_surface_several": lambda **options: vdb_offset.iso_surface_several(*self.mesh, [0.2, 0.3], **options),
+            "iso_shell": lambda **options: vdb_offset.iso_shell(*self.mesh, 0.3, inner=0.1, **options),
+        }
+        for name, call in calls.items():
+            with self.subTest(name):
+                shares = []
+                call(progress=lambda stage, share: shares.append(share))
+                self.assertEqual((shares[0], shares[-1]), (0, 1))
+                self.assertEqual(shares, sorted(shares))
+
+    def test_a_bar_by_tqdm(self):
+        with self.assertRaisesRegex(ValueError, "expected a function or 'tqdm', got 'bar'"):
+            self.offset(progress="bar")
+        try:
+            import tqdm  # noqa: F401
+        except ImportError:
+            with self.assertRaisesRegex(ImportError, "pip install tqdm"):
+                self.offset(progress="tqdm")
+            return
+        text = io.StringIO()
+        with contextlib.redirect_stderr(text):
+            self.offset(progress="tqdm")
+        self.assertIn("offset: 100 %|", text.getvalue())
+
     def test_what_the_callback_raises_is_raised(self):
         def progress(stage, share):
             raise KeyError("mine")
@@ -80,19 +108,19 @@ class LongCalls(unittest.TestCase):
         told, asked = [], []
 
         def reserve(size):
-            self.assertNotIn("rasterise", told)
+            self.assertEqual(told, ["rasterise"] * 2)  # the mesh is sorted, to know the plan
             asked.append(size)
 
         result = self.offset(reserve=reserve, progress=lambda stage, share: told.append(stage))
         self.assertEqual(asked, [result.statistics["grid"]["estimated_bytes"]])
-        self.assertIn("rasterise", told)
+        self.assertIn("sweep", told)
 
     def test_memory_that_is_refused(self):
         for answer in (False, 0, np.False_):
             told = []
             with self.assertRaises(vdb_offset.Cancelled):
                 self.offset(reserve=lambda size: answer, progress=lambda stage, share: told.append(stage))
-            self.assertNotIn("rasterise", told)
+            self.assertEqual(told, ["rasterise"] * 2)
 
         def fail(size):
             raise KeyError("mine")
@@ -122,7 +150,7 @@ class LongCalls(unittest.TestCase):
         told = []
         with control_c() as press, self.assertRaises(KeyboardInterrupt):
             self.offset(reserve=lambda size: press(), progress=lambda stage, share: told.append(stage))
-        self.assertNotIn("rasterise", told)
+        self.assertNotIn("sweep", told)
 
     def test_every_function_asks_for_memory(self):
         square, faces = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float), np.array([[0, 1, 2, 3]])

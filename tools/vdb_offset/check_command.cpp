@@ -294,7 +294,7 @@ void show_unmeasured(const Request& made, const Source& source, PolygonView resu
   write_page(made, source, result, std::string("The result ") + kRemark + ".");
 }
 
-std::optional<CheckResult> measure_curves(const CheckRequest& request) {
+std::optional<CheckResult> measure_curves(const CheckRequest& request, ProgressBar& bar) {
   const Request& made = request.made;
   const Source source = read_source(made, true);
   io::CurveReading how = curve_reading(made);
@@ -310,6 +310,7 @@ std::optional<CheckResult> measure_curves(const CheckRequest& request) {
   const Job job = resolve_options(made, source);
   CheckOptions options;
   options.threads = made.threads;
+  options.progress = bar.callback();
   options.corners = job.corners();
   options.miter_limit = job.options.miter_limit;
   options.precision = io::precision_of_curves(made.output, *source.curves, made.write);
@@ -319,9 +320,9 @@ std::optional<CheckResult> measure_curves(const CheckRequest& request) {
   return result;
 }
 
-std::optional<CheckResult> measure_meshes(const CheckRequest& request) {
+std::optional<CheckResult> measure_meshes(const CheckRequest& request, ProgressBar& bar) {
   const Request& made = request.made;
-  const Source source = read_source(made, false);
+  const Source source = read_source(made, false, bar.callback());
   if (!source.file && !request.may_differ)
     throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);
@@ -351,6 +352,7 @@ std::optional<CheckResult> measure_meshes(const CheckRequest& request) {
   if (io::is_written(offset.format)) options.precision = io::target_of(made.output, offset, made.write).precision;
   options.precision.rounds_all = source.file->format != offset.format;
   options.threads = made.threads;
+  options.progress = bar.callback();
   if (made.tolerance) {
     options.tolerance_share = made.tolerance->tolerance.share;
     options.tolerance_length = made.tolerance->tolerance.length;
@@ -383,7 +385,12 @@ std::optional<CheckResult> measure(CheckRequest& request) {
   require_outputs_apart(request);
   for (const std::string& path : {made.report, made.states, made.html})
     if (!path.empty()) require_writable(path);
-  return request.are_curves ? measure_curves(request) : measure_meshes(request);
+  ProgressBar bar(!made.quiet);
+  bar.expect_writing(0);
+  bar.show(Stage::Read, 0);
+  std::optional<CheckResult> result = request.are_curves ? measure_curves(request, bar) : measure_meshes(request, bar);
+  bar.show(Stage::Measure, 1);
+  return result;
 }
 
 bool is_check(int argc, const char* const* argv) { return argc > 1 && std::string(argv[1]) == "check"; }

@@ -170,14 +170,18 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   }
   const io::Transported transported = read_attributes_of(job);
   std::vector<IsoResult> results;
-  for (std::size_t i = 0; i < destinations.size(); ++i)
-    results.push_back(make_valid(job, job.distances[i], transported));
+  const auto make = [&](std::size_t i) {
+    const auto count = static_cast<double>(job.distances.size()), number = static_cast<double>(i);
+    bar.expect_work_between(number / count, (number + 1) / count);
+    return make_valid(job, job.distances[i], transported);
+  };
+  for (std::size_t i = 0; i < destinations.size(); ++i) results.push_back(make(i));
   std::optional<IsoResult> inner;
-  if (job.request.inner) inner = make_valid(job, job.distances.back(), transported);
+  if (job.request.inner) inner = make(job.distances.size() - 1);
   if (job.shell) require_inside(results.front());
-  bar.show(Stage::Write, 0);
   const IsoResult* const inner_skin = inner ? &*inner : nullptr;
   OutputFiles outputs(job.request.sync);
+  outputs.report_to(bar.callback(), job.files.written.size());
   std::optional<Hollow> hollow;  // for one distance alone
   std::vector<std::optional<LevelSetFacts>> level_sets(destinations.size());
   for (std::size_t i = 0; i < destinations.size(); ++i) {
@@ -188,6 +192,7 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
     else level_sets[i] = write_iso_surface(job, transported, destinations[i], results[i], timing.start);
   }
   outputs.commit(ignore_interrupts);
+  bar.show(Stage::Write, 1);
   bar.clear();
   for (std::size_t i = 0; i < destinations.size() && !job.request.quiet; ++i) {
     const double distance = job.distances[i][0], seconds = seconds_since(timing.start);

@@ -158,10 +158,10 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   grow(job, grown);
   LayersResult& layers = grown.layers;
   require_cells(job, grown);
-  bar.show(Stage::Write, 0);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
   const PolygonView mesh = source.view();
   OutputFiles outputs(request.sync);
+  outputs.report_to(bar.callback(), job.files.written.size());
   if (!request.states.empty())
     io::write_states(request.states, {layers.stacks.surface(layers.count()), mesh.corners, mesh.face_begin},
                      {layers.states, layers.achieved, layers.heights.back()}, {{}, &grown.names, job.curves()});
@@ -170,6 +170,7 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   write_report_and_page(job, grown, timing);
   outputs.commit(ignore_interrupts);
+  bar.show(Stage::Write, 1);
   bar.clear();
   if (!request.quiet) print_layers_summary(job, grown.layers, grown.report, seconds_since(timing.start));
   if (!are_faces_there(request, grown.layers)) return kProcessing;

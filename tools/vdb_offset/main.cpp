@@ -2,6 +2,7 @@
 // The command: reads a request from the command line, makes a job of it and the source, and carries it out.
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <optional>
@@ -28,6 +29,22 @@
 namespace vdb_offset::tool {
 namespace {
 
+bool is_cad(const Request& request) {
+  const std::optional<io::Format> format = format_of(request.input, request);
+  return format && io::is_cad(*format);
+}
+
+/// How much of a run reading takes, for its progress. Measured: of CAD models 0.02 to 0.3, of others 0.01 to 0.1.
+double reading_share(const Request& request) { return is_cad(request) ? 0.1 : 0.03; }
+
+/// How much of a run writing takes, once all is read. Measured: of CAD models 0.3 to 0.9; of 1, 5 and 20 layers 0.15,
+/// 0.45 and 0.7; of others 0.01 to 0.1.
+double writing_share(const Job& job) {
+  if (is_cad_output(job.request.output, job.request)) return 0.7;
+  const auto layers = static_cast<double>(job.request.layers ? job.distances.size() : 0);
+  return std::max(0.03, layers / (layers + 7));
+}
+
 ExitCode run(const Job& job, const Timing& timing, ProgressBar& bar) {
   require_apart(job.files);
   if (job.request.layers) return run_layers(job, timing, bar);
@@ -48,13 +65,12 @@ ExitCode run(const Request& request) {
   // Names that a scene's own distance is part of, and those of layers, are known later.
   if (!request.dry_run && !request.layers && !request.distances.empty()) require_writable_files(files);
   ProgressBar bar(!request.quiet);
+  bar.expect_reading(reading_share(request));
   bar.show(Stage::Read, 0);
-  const Source source = read_source(request, curves);
+  const Source source = read_source(request, curves, bar.callback());
   Job job = resolve(request, source);
-  job.options.progress = [&](Stage stage, double share) {
-    bar.show(stage, share);
-    return true;
-  };
+  bar.expect_writing(writing_share(job));
+  job.options.progress = bar.callback();
   if (of_batch) {
     if (source.scene && !source.scene->mesh_path.empty()) tell_file_read(source.scene->mesh_path);
     for (const std::string& path : job.files_of_heights) tell_file_read(path);

@@ -171,12 +171,14 @@ ExitCode finish(const Job& job, std::vector<OffsetResult>& results, const Refine
   const OffsetResult* const inner = request.inner ? &results.back() : nullptr;
   std::vector<std::optional<Products>> made;
   OutputFiles outputs(request.sync);
+  outputs.report_to(bar.callback(), job.files.written.size());
   if (refined) write_refinement(request, *refined);
   for (std::size_t i = 0; i < job.files.outputs.size(); ++i) {
     results[i].statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
     made.push_back(try_outputs(job, {job.files.outputs[i], results[i], inner}, timing));
   }
   outputs.commit(ignore_interrupts);
+  bar.show(Stage::Write, 1);
   bar.clear();
   for (std::size_t i = 0; i < job.files.outputs.size() && !request.quiet; ++i)
     if (made[i]) print_summary(job, {job.files.outputs[i], results[i], inner}, *made[i], seconds_since(timing.start));
@@ -214,7 +216,6 @@ ExitCode run_to_tolerance(const Job& job, const Timing& timing, ProgressBar& bar
   // Its file has what the source's own vertices are. Where writing rounds these, they were rounded for the offset.
   std::copy(job.source.view().positions.begin(), job.source.view().positions.end(),
             made.refinement.polygons.positions.begin());
-  bar.show(Stage::Write, 0);
   const RefinedSource refined = refined_source(job.source, std::move(made.refinement));
   std::vector<OffsetResult> results;
   results.push_back(refined.vertex.empty() ? std::move(made.result) : of_copies(made.result, refined.vertex));
@@ -254,7 +255,6 @@ ExitCode run_offset(const Job& job, const Timing& timing, ProgressBar& bar) {
   if (request.tolerance) return run_to_tolerance(job, timing, bar);
   require_field(job);
   std::vector<OffsetResult> results = compute(job);
-  bar.show(Stage::Write, 0);
   return finish(job, results, nullptr, timing, bar);
 }
 

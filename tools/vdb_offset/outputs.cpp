@@ -124,6 +124,7 @@ io::WriteResult write_mesh_or_shell(const Job& job, const Outcome& outcome, cons
 io::CadWriting cad_writing(const Job& job) {
   const Request& request = job.request;
   io::CadWriting how;
+  how.progress = OutputFiles::progress_of_next();
   how.format = request.format;
   how.fit_tolerance = request.fit_tolerance;
   how.only = job.options.only;

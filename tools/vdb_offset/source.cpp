@@ -122,8 +122,10 @@ void tell_remarks(const io::MeshFile& file) {
 
 namespace {
 
-io::ReadOptions reading_of(const std::string& path, const Request& request) {
-  return {format_of(path, request), cad_reading(request), request.level_set};
+io::ReadOptions reading_of(const std::string& path, const Request& request, const ProgressCallback& progress = {}) {
+  io::ReadOptions how{format_of(path, request), cad_reading(request), request.level_set};
+  how.cad.progress = progress;
+  return how;
 }
 
 /// Refuses a mesh beside the source whose file says that its numbers are something else.
@@ -152,7 +154,7 @@ void list_named(const io::MeshFile& file, Source& source) {
 
 }  // namespace
 
-Source read_source(const Request& request, bool curves) {
+Source read_source(const Request& request, bool curves, const ProgressCallback& progress) {
   set_memory_limit(request.max_memory);
   Source source;
   if (curves) {
@@ -163,7 +165,7 @@ Source read_source(const Request& request, bool curves) {
     return source;
   }
   if (scene::is_scene(request.input)) source.scene = scene::read_scene(request.input);
-  if (!source.scene) source.file = io::read_mesh(request.input, reading_of(request.input, request));
+  if (!source.scene) source.file = io::read_mesh(request.input, reading_of(request.input, request, progress));
   else if (!source.scene->mesh_path.empty()) {
     source.files_named.push_back(source.scene->mesh_path);
     source.file = io::read_mesh(source.scene->mesh_path, {{}, cad_reading(request), request.level_set});

@@ -53,8 +53,9 @@ io::CadReading cad_reading(const Request& request);
 /// Prints what is wrong with a file that was read all the same.
 void tell_remarks(const io::MeshFile& file);
 
-/// Reads INPUT, as curves or as a mesh, and the meshes beside it. \throw ReadError, InvalidInput
-Source read_source(const Request& request, bool curves);
+/// Reads INPUT, as curves or as a mesh, and the meshes beside it. \param progress of reading INPUT, as far as that is
+/// known: of CAD models. \throw ReadError, InvalidInput
+Source read_source(const Request& request, bool curves, const ProgressCallback& progress = {});
 
 /// Makes the source with the faces of a refinement, a file of the same kind if it is one. \throw as io::refine_file()
 RefinedSource refined_source(const Source& source, Refinement refinement);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 
@@ -41,20 +42,75 @@ void end_for_lost_input(int) {
   _exit(2);
 }
 
+/// What a stage does.
+const char* in_words(Stage stage) {
+  switch (stage) {
+    case Stage::Read:
+      return "reading";
+    case Stage::Rasterise:
+    case Stage::Sweep:
+    case Stage::Gradient:
+      return "computing distances";
+    case Stage::Propagate:
+      return "moving vertices";
+    case Stage::Capture:
+      return "making the surface";
+    case Stage::Limit:
+      return "keeping faces valid";
+    case Stage::Refine:
+      return "splitting faces";
+    case Stage::Layers:
+      return "stacking layers";
+    case Stage::Measure:
+      return "measuring";
+    case Stage::Write:
+      return "writing";
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string time_in_words(double seconds) {
+  constexpr long kMinute = 60, kHour = 60 * kMinute;
+  constexpr double kShort = 10;  // seconds
+  if (seconds < kShort) return fmt::format("{:.1f} s", seconds);
+  const auto all = std::lround(seconds);
+  if (all >= kHour) return fmt::format("{} h {:02} min", all / kHour, all % kHour / kMinute);
+  if (all >= kMinute) return fmt::format("{} min {:02} s", all / kMinute, all % kMinute);
+  return fmt::format("{} s", all);
+}
 
 ProgressBar::ProgressBar(bool wanted) : active_(wanted && isatty(STDERR_FILENO)) {}
 ProgressBar::~ProgressBar() { clear(); }
 
+double ProgressBar::share_of_run(Stage stage, double share) const {
+  if (stage == Stage::Read) return share * read_until_;
+  if (stage == Stage::Write) return work_until_ + (1 - work_until_) * share;
+  const auto [from, to] = work_part_;
+  return read_until_ + (work_until_ - read_until_) * (from + (to - from) * share);
+}
+
+std::string ProgressBar::time_left(double share) {
+  const double now = std::chrono::duration<double>(Clock::now() - begun_).count();
+  shares_.emplace_back(now, share);
+  while (shares_.size() > 2 && shares_[1].first < now / 2) shares_.pop_front();
+  const auto [then, share_then] = shares_.front();
+  constexpr double kEarly = 1;  // second
+  if (now < kEarly || !(share > share_then)) return {};
+  return fmt::format(", {} left", time_in_words((1 - share) * (now - then) / (share - share_then)));
+}
+
 void ProgressBar::show(Stage stage, double share) {
   if (!active_) return;
   constexpr int kWidth = 40;  // characters
-  const int filled = static_cast<int>(share * kWidth);
-  std::string line =
-      fmt::format("{:<10} [{:#<{}}{:.<{}}] {:3.0f} %", name(stage), "", filled, "", kWidth - filled, 100 * share);
+  const double of_run = shown_share_ = std::max(shown_share_, share_of_run(stage, share));
+  const int filled = static_cast<int>(of_run * kWidth);
+  std::string line = fmt::format("[{:#<{}}{:.<{}}] {:3.0f} %  {}{}", "", filled, "", kWidth - filled,
+                                 std::floor(100 * of_run), in_words(stage), time_left(of_run));
   if (line == shown_) return;
+  print(fmt::format("\r{:{}}", line, shown_.size()));
   shown_ = std::move(line);
-  print("\r" + shown_);
 }
 
 void ProgressBar::clear() {

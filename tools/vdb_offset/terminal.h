@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <deque>
 #include <string>
+#include <utility>
 
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 
-/// Draws a bar per stage on standard error if that is a terminal, and nothing at all if not.
+/// A time in words, as "2 h 05 min", "3 min 20 s", "12 s" or "1.2 s".
+std::string time_in_words(double seconds);
+
+/// Draws one bar for a whole run on standard error if that is a terminal, and nothing at all if not: the share that is
+/// done, what is being done, and how long the rest will take. A run reads, works (what the library reports) and writes.
 class ProgressBar {
  public:
   explicit ProgressBar(bool wanted);
@@ -15,13 +22,40 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
+  /// How much of the run reading takes, as a share of it.
+  void expect_reading(double share) { read_until_ = share; }
+  /// Once all is read: how much of the rest writing takes, as a share of that.
+  void expect_writing(double share) { work_until_ = read_until_ + (1 - read_until_) * (1 - share); }
+
+  /// Of work that is several calls of the library: of which part of it shares are from here on.
+  void expect_work_between(double from, double to) { work_part_ = {from, to}; }
+
+  /// Shares of the part of the run that the stage belongs to.
   void show(Stage stage, double share);
+  /// Calls show(). \pre this lives as long
+  ProgressCallback callback() {
+    return [this](Stage stage, double share) {
+      show(stage, share);
+      return true;
+    };
+  }
   void clear();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  double share_of_run(Stage stage, double share) const;
+  /// How long the rest takes if it goes on as over the last half of the time so far, in words; empty if it is too early
+  /// to say.
+  std::string time_left(double share);
   void print(const std::string& text);
 
   bool active_;
+  double read_until_ = 0.05, work_until_ = 0.95;  ///< Shares of the run.
+  std::pair<double, double> work_part_{0, 1};     ///< Shares of the work.
+  Clock::time_point begun_ = Clock::now();
+  std::deque<std::pair<double, double>> shares_;  ///< Of the run, after so many seconds: the latest half of the time.
+  double shown_share_ = 0;
   std::string shown_;
 };
 

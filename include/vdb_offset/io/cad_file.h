@@ -49,9 +49,10 @@ struct CadWriting {
   /// Hold faces back where the fronts of two parts of the model meet, as Collision::Limit does vertices. Else faces
   /// that meet so are cut along the curves in which they cross.
   bool holds_back = false;
-  PolygonView obstacles;  ///< With holds_back: meshes that the result must not come nearer to than `clearance`.
-  double clearance = 0;   ///< World units.
-  bool faceted = false;   ///< Where no solid comes of the faces, write one of triangles.
+  PolygonView obstacles;      ///< With holds_back: meshes that the result must not come nearer to than `clearance`.
+  double clearance = 0;       ///< World units.
+  bool faceted = false;       ///< Where no solid comes of the faces, write one of triangles.
+  ProgressCallback progress;  ///< See run.h; all of it is Stage::Write. May cancel.
 };
 
 /// Whether a CAD model can be written in a format: in Step and Brep.

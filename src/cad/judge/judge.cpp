@@ -24,6 +24,7 @@
 
 #include "judge/edge_points.h"
 #include "judge/soup.h"
+#include "messages/progress.h"
 #include "offset/offset_surface.h"
 
 namespace vdb_offset::cad {
@@ -169,6 +170,25 @@ double exact_distance(const TopoDS_Shape& shape, const gp_Pnt& point) {
   return exact_distance(shape, point, is_inside, 0);
 }
 
+// Shares of the judgement that are shown as done once triangles are made, and points of the result and of the source
+// have been looked at. Not measured.
+constexpr double kSoups = 0.2, kPoints = 0.6, kCover = 0.9;
+
+/// Reports how many of some points have been looked at.
+class ProgressOf {
+ public:
+  ProgressOf(double from, double to, std::size_t count) : part_(from, to), count_(count) {}
+
+  void report(std::ptrdiff_t point) const {
+    constexpr std::ptrdiff_t kBetween = 256;
+    if (point % kBetween == 0) io::report_progress(static_cast<double>(point) / static_cast<double>(count_));
+  }
+
+ private:
+  io::ProgressPart part_;
+  std::size_t count_;
+};
+
 class Judge {
  public:
   Judge(const TopoDS_Shape& source, const TopoDS_Shape& made, const TopoDS_Shape& result, const AskedDistance& asked,
@@ -189,6 +209,7 @@ class Judge {
     if (is_closed_) check_turned_round();
     if (!verdict_.faults.empty()) return verdict_;
     const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.02 * far_, 0.3);
+    io::report_progress(kSoups);
     if (!result.is_complete()) fault("a face has no triangles");
     if (result.triangles().empty()) return verdict_;
     // Valid by its tolerances, a wire may still be open in (u, v): who makes triangles of the face leaves some out.
@@ -206,6 +227,7 @@ class Judge {
     } else if (is_closed_ && asked_.has_one_side()) {
       check_side(source, result);
     }
+    io::report_progress(kCover);
     if (is_closed_) check_turns(result);
     if (crosses(result) && crosses(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2))) fault("the result crosses itself");
     return verdict_;
@@ -257,7 +279,9 @@ class Judge {
     std::string place;
     verdict_.least = 1e300;
     const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / 40000000);
+    const ProgressOf progress(kSoups, kPoints, points.size());
     for (const SoupPoint& p : points) {
+      progress.report(&p - points.data());
       SoupPoint foot = source.closest(p.point);
       double share = foot.distance / far_;
       // Beyond a sharp edge its miter may lie over the inside of a third face: of much of a thin wall's two sides.
@@ -327,7 +351,10 @@ class Judge {
     int missing = 0, doubts = 0;
     double worst = 0;
     std::string place;
-    for (const SoupPoint& p : spread(source, options_.samples / 2)) {
+    const std::vector<SoupPoint> points = spread(source, options_.samples / 2);
+    const ProgressOf progress(kPoints, kCover, points.size());
+    for (const SoupPoint& p : points) {
+      progress.report(&p - points.data());
       const gp_Pnt moved = p.point.Translated(source.outside(p) * distance_);
       if (source.closest(moved).distance < far_ * (1 - 1e-3)) continue;
       const double way = result.closest(moved).distance / far_;

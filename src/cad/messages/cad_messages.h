@@ -31,6 +31,7 @@ enum class CadReply : std::uint32_t {
   InvalidFile = 3,  ///< A text: `expected X, got Y`.
   OutOfMemory = 4,  ///< A text, as before.
   Failed = 5,       ///< A text, as before: the request, and not the file, is at fault.
+  Progress = 6,     ///< A double: the share of the request that is done. Any number of them comes before another reply.
 };
 
 /// The file to be read, and how.

@@ -83,6 +83,13 @@ void MessageChannel::read(void* bytes, std::size_t size, const Deadline& deadlin
   }
 }
 
+std::string MessageChannel::framed(std::uint32_t kind, std::string_view payload) {
+  const Header header{kStart, kind, payload.size()};
+  std::string bytes(reinterpret_cast<const char*>(&header), sizeof(header));
+  bytes += payload;
+  return bytes;
+}
+
 void MessageChannel::send(std::uint32_t kind, std::string_view payload, const Deadline& deadline) {
   const Header header{kStart, kind, payload.size()};
   write(&header, sizeof(header), deadline);

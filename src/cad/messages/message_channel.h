@@ -50,6 +50,9 @@ class MessageChannel {
   MessageChannel() = default;
   explicit MessageChannel(OpenFile socket) : socket_(std::move(socket)) {}
 
+  /// A message as it goes through the socket.
+  static std::string framed(std::uint32_t kind, std::string_view payload);
+
   /// \throw TooLate, Hangup
   void send(std::uint32_t kind, std::string_view payload, const Deadline& deadline);
   /// What comes is kept as it comes: a length that is named and not kept to takes no memory. \throw TooLate, Hangup,

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "messages/progress.h"
 #include "offset/arrange.h"
 #include "offset/build.h"
 
@@ -50,6 +51,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
   BRep_Builder builder;
   TopoDS_Compound all;
   builder.MakeCompound(all);
+  const auto all_faces = static_cast<double>(count_faces(request.source));
   std::vector<TopoDS_Shape> pieces;
   for (TopExp_Explorer s(request.source, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
   for (TopExp_Explorer s(request.source, TopAbs_SHELL, TopAbs_SOLID); s.More(); s.Next()) pieces.push_back(s.Current());
@@ -73,6 +75,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
         continue;
       }
       for (std::size_t f = 0; f < model.faces.size(); f++) {
+        io::report_progress(static_cast<double>(result.faces.size()) / all_faces);
         ModelFace& face = model.faces[f];
         face.distance.constant = face.sign * request.distance;
         if (!request.of_face.empty()) face.distance = towards(request.of_face[first_face + f], face.sign);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <new>
 
+#include "messages/progress.h"
 #include "tessellate/tessellate.h"
 #include "worker/memory_limit.h"
 #include "write/write_offset.h"
@@ -43,9 +44,13 @@ io::CadMesh tessellate_within_memory(CadModel& model, const io::CadFineness& fin
 }  // namespace
 
 std::string Requests::mesh(const io::ReadCad& read) {
+  // Shares that are shown as done. Not measured.
+  constexpr double kRead = 0.4, kTessellated = 0.95;
   limit_memory(read.most_memory);
   model_ = read_within_memory(read);
+  io::report_progress(kRead);
   const io::CadMesh mesh = tessellate_within_memory(*model_, read.fineness);
+  io::report_progress(kTessellated);
   surfaces_.clear();
   for (const Body& body : model_->bodies)
     for (const BodyFace& face : body.faces) surfaces_.push_back({FaceSurface(face.face), 1});

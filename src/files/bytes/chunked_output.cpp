@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bytes/compression.h"
+#include "ground/system/call_progress.h"
 #include "vdb_offset/output_files.h"
 
 namespace vdb_offset::io {
@@ -68,7 +69,14 @@ Pieces in_a_row(std::vector<Pieces> files) {
 }
 
 void write_pieces(const std::string& path, const Pieces& pieces) {
-  write_file(path, [&](const Sink& sink) { produce(pieces, compression_of(path), sink); });
+  const ProgressCallback progress = OutputFiles::progress_of_next();
+  write_file(path, [&](const Sink& sink) {
+    std::size_t written = 0;
+    produce(pieces, compression_of(path), [&](std::string_view bytes) {
+      sink(bytes);
+      report_share(progress, Stage::Write, static_cast<double>(++written) / static_cast<double>(pieces.count));
+    });
+  });
 }
 
 void write_pieces_of(const std::string& source, const FileBytes& bytes, const std::string& path, const Pieces& pieces) {

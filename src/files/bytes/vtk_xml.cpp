@@ -14,12 +14,15 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <utility>
 
 #include "bytes/compression.h"
+#include "ground/system/call_progress.h"
 #include "ground/system/parallel.h"
+#include "vdb_offset/output_files.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
@@ -88,8 +91,8 @@ class PatchedFile {
 };
 
 /// Appends an array in blocks: their number, the bytes of a whole one and of what the last one has if it is not, and
-/// what each takes compressed; then these.
-void append_packed(PatchedFile& file, const VtkArray& array) {
+/// what each takes compressed; then these. `report` is called with the share that is done.
+void append_packed(PatchedFile& file, const VtkArray& array, const std::function<void(double)>& report) {
   const std::size_t items = array.section.items, per_block = std::max(std::size_t{1}, kPackedBlock / array.item_bytes),
                     blocks = (items + per_block - 1) / per_block;
   std::vector<std::uint64_t> header(3 + blocks, 0);
@@ -114,6 +117,7 @@ void append_packed(PatchedFile& file, const VtkArray& array) {
       header[3 + first + b] = packed[b].size();
       file.append(packed[b]);
     }
+    report(static_cast<double>(first + packed.size()) / static_cast<double>(blocks));
   }
   file.patch(begin, in_bytes());
 }
@@ -203,9 +207,18 @@ void VtkXml::write_packed(const std::string& temporary, const std::string& path)
   file.append(std::string_view(text_).substr(copied));
   file.append(fmt::format("</{}>\n{}", dataset_, kAppended));
   const std::uint64_t begin = file.size();
+  const ProgressCallback progress = OutputFiles::progress_of_next();
+  const auto bytes_of = [](const VtkArray& array) {
+    return static_cast<double>(array.section.items * array.item_bytes);
+  };
+  double all = 1, done = 0;
+  for (const VtkArray& array : arrays_) all += bytes_of(array);
   for (std::size_t a = 0; a < arrays_.size(); ++a) {
     file.patch(offset_at[a], fmt::format("{}", file.size() - begin));
-    append_packed(file, arrays_[a]);
+    append_packed(file, arrays_[a], [&](double share) {
+      report_share(progress, Stage::Write, (done + share * bytes_of(arrays_[a])) / all);
+    });
+    done += bytes_of(arrays_[a]);
   }
   file.append(kEnd);
   file.close();

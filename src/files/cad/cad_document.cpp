@@ -142,7 +142,8 @@ CadFineness fineness_of(const CadReading& how) {
 }  // namespace
 
 void parse_cad(MeshFile& file, const CadReading& how) {
-  CadWorker worker(file.path, file.text(), name(file.format), fineness_of(how), how.seconds, memory_limit());
+  CadWorker worker(file.path, file.text(), name(file.format), fineness_of(how), how.seconds, memory_limit(),
+                   how.progress);
   const auto mesh = std::make_shared<const CadMesh>(worker.take_mesh());
   file.polygons.positions = mesh->positions;
   for (const auto& triangle : mesh->triangles) file.polygons.add_face({triangle[0], triangle[1], triangle[2]});

@@ -136,11 +136,28 @@ struct CadWorker::State {
       fail_to_start(path, "version " + first.payload + " for a program of version " VDB_OFFSET_VERSION);
   }
 
-  std::string ask(CadRequest kind, std::string_view payload, const Deadline& until) {
+  /// The reply to a request; progress that comes before it is passed on. \throw Cancelled; the worker is ended then
+  Message reply_to(CadRequest kind, const Deadline& until, const ProgressCallback& progress) {
+    const Stage stage = kind == CadRequest::Mesh ? Stage::Read : Stage::Write;
+    double most = 0;  // an attempt may begin anew
+    while (true) {
+      Message reply = process->messages().receive(until, kMostOfReply);
+      if (reply.kind != static_cast<std::uint32_t>(CadReply::Progress)) return reply;
+      Unpacker unpacker(reply.payload);
+      const auto share = unpacker.value<double>();
+      unpacker.end();
+      most = std::clamp(share, most, 1.0);
+      if (!progress || progress(stage, most)) continue;
+      process.reset();
+      throw Cancelled();
+    }
+  }
+
+  std::string ask(CadRequest kind, std::string_view payload, const Deadline& until, const ProgressCallback& progress) {
     if (!process) throw InvalidInput(path + ": expected a CAD file that is still being read, got one that failed");
     try {
       process->messages().send(static_cast<std::uint32_t>(kind), payload, until);
-      Message reply = process->messages().receive(until, kMostOfReply);
+      Message reply = reply_to(kind, until, progress);
       switch (static_cast<CadReply>(reply.kind)) {
         case CadReply::Done:
           return std::move(reply.payload);
@@ -168,7 +185,7 @@ struct CadWorker::State {
 };
 
 CadWorker::CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadFineness& fineness,
-                     double seconds, std::uint64_t most_memory)
+                     double seconds, std::uint64_t most_memory, const ProgressCallback& progress)
     : state_(std::make_unique<State>(std::move(path), seconds, most_memory)) {
   const std::string name = format_of(state_->path, format);
   require_least_memory(state_->path, bytes.size(), most_memory);
@@ -176,7 +193,7 @@ CadWorker::CadWorker(std::string path, std::string_view bytes, std::string_view 
   const Deadline until = state_->deadline();
   state_->start(file_of(state_->path, bytes), until);
   const ReadCad read{fmt::format("/proc/self/fd/{}", kWorkerModel), name, fineness, most_memory};
-  const std::string reply = state_->ask(CadRequest::Mesh, pack(read), until);
+  const std::string reply = state_->ask(CadRequest::Mesh, pack(read), until, progress);
   state_->spent += std::chrono::steady_clock::now() - begun;
   try {
     mesh_ = unpack_mesh(reply);
@@ -189,9 +206,9 @@ CadWorker::~CadWorker() = default;
 CadWorker::CadWorker(CadWorker&&) noexcept = default;
 CadWorker& CadWorker::operator=(CadWorker&&) noexcept = default;
 
-std::string CadWorker::request(CadRequest kind, std::string_view payload) {
+std::string CadWorker::request(CadRequest kind, std::string_view payload, const ProgressCallback& progress) {
   const auto begun = std::chrono::steady_clock::now();
-  std::string reply = state_->ask(kind, payload, state_->deadline());
+  std::string reply = state_->ask(kind, payload, state_->deadline(), progress);
   state_->spent += std::chrono::steady_clock::now() - begun;
   return reply;
 }
@@ -226,8 +243,8 @@ std::vector<Vec3d> CadWorker::offset_points(std::span<const CadAim> aims, std::s
   }
 }
 
-CadWritten CadWorker::write(const WriteCad& write) {
-  const std::string reply = request(CadRequest::Write, pack(write));
+CadWritten CadWorker::write(const WriteCad& write, const ProgressCallback& progress) {
+  const std::string reply = request(CadRequest::Write, pack(write), progress);
   try {
     return unpack_written(reply);
   } catch (const BadMessage& bad) {

@@ -10,6 +10,7 @@
 
 #include "messages/cad_mesh.h"
 #include "messages/cad_messages.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
 
@@ -24,9 +25,9 @@ class CadWorker {
  public:
   /// Reads and tessellates the file's bytes, which are kept nowhere here. `format` is a name's ending, with or without
   /// a point: step, stp, iges, igs, brep. `seconds` is how long all requests together may take, this one included;
-  /// `most_memory` how many bytes of addresses the worker may ask for, 0: any.
+  /// `most_memory` how many bytes of addresses the worker may ask for, 0: any; `progress` is called with Stage::Read.
   CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadFineness& fineness,
-            double seconds, std::uint64_t most_memory);
+            double seconds, std::uint64_t most_memory, const ProgressCallback& progress = {});
   ~CadWorker();
   CadWorker(CadWorker&&) noexcept;
   CadWorker& operator=(CadWorker&&) noexcept;
@@ -42,11 +43,11 @@ class CadWorker {
   /// says, in their order: see ExactSurface::bring_to_distances(). \throw InvalidInput for a face that is none
   std::vector<Vec3d> offset_points(std::span<const CadAim> aims, std::span<const CadPlace> places);
 
-  /// Makes the model's offset, and the bytes of a file of it.
-  CadWritten write(const WriteCad& write);
+  /// Makes the model's offset, and the bytes of a file of it. `progress` is called with Stage::Write.
+  CadWritten write(const WriteCad& write, const ProgressCallback& progress = {});
 
   /// Another request, and the payload of its reply. (The kinds that have a function are asked for by that.)
-  std::string request(CadRequest kind, std::string_view payload);
+  std::string request(CadRequest kind, std::string_view payload, const ProgressCallback& progress = {});
 
  private:
   struct State;

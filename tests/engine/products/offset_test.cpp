@@ -421,10 +421,12 @@ TEST_CASE("offset: progress runs through the stages and can cancel each", "[offs
   for (const Stage stop : {Stage::Rasterise, Stage::Sweep, Stage::Propagate}) {
     OffsetOptions options = by(0.1);
     int last = 0;
+    double last_share = 0;
     bool ordered = true;
-    options.progress = [&](Stage stage, double share_done) {
-      ordered &= static_cast<int>(stage) >= last && share_done >= 0 && share_done <= 1;
+    options.progress = [&](Stage stage, double share) {
+      ordered &= static_cast<int>(stage) >= last && share >= last_share && share <= 1;
       last = static_cast<int>(stage);
+      last_share = share;
       return stage != stop;
     };
     CHECK_THROWS_AS(offset(mesh.view(), options), Cancelled);
@@ -433,17 +435,60 @@ TEST_CASE("offset: progress runs through the stages and can cancel each", "[offs
   }
 }
 
+TEST_CASE("offset: progress is one share of the whole call, which never falls and ends at 1", "[offset][progress]") {
+  const Polygons mesh = shapes::bumpy_sphere(1, 0.3, 1.5, 2, 4);
+  std::vector<double> shares;
+  const auto listen = [&](Stage, double share) {
+    shares.push_back(share);
+    return true;
+  };
+  OffsetOptions options;
+  options.progress = listen;
+  const auto check_shares = [&](const char* what, double most_step) {
+    INFO(what);
+    REQUIRE(shares.size() > 4);
+    CHECK(shares.front() == 0);
+    CHECK(std::is_sorted(shares.begin(), shares.end()));
+    CHECK(shares.back() == 1);
+    double step = 0;
+    for (std::size_t i = 1; i < shares.size(); ++i) step = std::max(step, shares[i] - shares[i - 1]);
+    CHECK(step < most_step);
+    shares.clear();
+  };
+  options.distance = 0.05;
+  offset(mesh.view(), options);
+  check_shares("nothing to mend", 0.6);
+  options.distance = -0.3;
+  CHECK(offset(mesh.view(), options).statistics.limit.rounds > 0);
+  check_shares("much to mend", 0.6);
+  offset_several(mesh.view(), std::vector<Distances>{0.1, 0.2, -0.1}, options);
+  check_shares("several distances", 0.6);
+  grow_layers(mesh.view(), std::vector<Distances>{0.05, 0.1}, options);
+  check_shares("layers", 0.6);
+  options.distance = 0.1;
+  offset_to_tolerance(mesh.view(), options, {.share = 0.02});
+  check_shares("to a tolerance", 0.4);
+  IsoOptions iso;
+  iso.distance = 0.1;
+  iso.progress = listen;
+  make_iso_surface(mesh.view(), iso);
+  check_shares("iso-surface", 0.6);
+  options.distance = 0;
+  offset(mesh.view(), options);
+  CHECK(shares.back() == 1);
+}
+
 TEST_CASE("offset: memory is asked for once, as the plan has it, before the field is made", "[offset]") {
   const Polygons mesh = shapes::bumpy_sphere(1, 0.3, 1.5, 2, 4);
   OffsetOptions options = by(0.1);
   std::vector<std::size_t> asked;
-  bool begun = false;
+  std::size_t reports = 0;
   options.progress = [&](Stage, double) {
-    begun = true;
+    ++reports;
     return true;
   };
   options.reserve = [&](std::size_t bytes) {
-    CHECK_FALSE(begun);
+    CHECK(reports == 2);  // sorting the mesh, to know the plan, begins and ends
     asked.push_back(bytes);
     return true;
   };

@@ -23,6 +23,7 @@
 #include "batch/table.h"
 #include "job.h"
 #include "messages.h"
+#include "terminal.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {

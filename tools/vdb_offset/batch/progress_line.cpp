@@ -5,8 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+
+#include "terminal.h"
 
 namespace vdb_offset::tool {
 namespace {
@@ -14,16 +15,6 @@ namespace {
 constexpr double kSecondsBetweenLines = 60;  // in a file or a pipe
 
 }  // namespace
-
-std::string time_in_words(double seconds) {
-  constexpr long kMinute = 60, kHour = 60 * kMinute;
-  constexpr double kShort = 10;  // seconds
-  if (seconds < kShort) return fmt::format("{:.1f} s", seconds);
-  const auto all = std::lround(seconds);
-  if (all >= kHour) return fmt::format("{} h {:02} min", all / kHour, all % kHour / kMinute);
-  if (all >= kMinute) return fmt::format("{} min {:02} s", all / kMinute, all % kMinute);
-  return fmt::format("{} s", all);
-}
 
 std::string models_in_words(std::size_t count) { return fmt::format("{} model{}", count, count == 1 ? "" : "s"); }
 

@@ -38,8 +38,6 @@ class ProgressLine {
   std::string shown_;
 };
 
-/// A time in words, as "2 h 05 min", "3 min 20 s", "12 s" or "1.2 s".
-std::string time_in_words(double seconds);
 /// "1 model", "2 models".
 std::string models_in_words(std::size_t count);
 

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <utility>
 
+#include "ground/system/call_progress.h"
 #include "ground/system/temporary.h"
 #include "vdb_offset/run.h"
 
@@ -90,6 +91,20 @@ OutputFiles::~OutputFiles() {
   innermost = outer_;
   files_.clear();
   while (!folders_.empty()) folders_.pop_back();  // inner folders first: a folder can only be removed once it is empty
+}
+
+void OutputFiles::report_to(ProgressCallback progress, std::size_t files) {
+  progress_ = std::move(progress);
+  expected_files_ = std::max<std::size_t>(files, 1);
+}
+
+ProgressCallback OutputFiles::progress_of_next() {
+  OutputFiles* asked = innermost;
+  while (asked && !asked->progress_) asked = asked->outer_;
+  if (!asked) return {};
+  const std::size_t next = std::min(asked->begun_files_++, asked->expected_files_ - 1);
+  const auto files = static_cast<double>(asked->expected_files_);
+  return part_of(asked->progress_, static_cast<double>(next) / files, static_cast<double>(next + 1) / files);
 }
 
 const std::string& OutputFiles::add_file(const std::filesystem::path& target, const std::string& path) {

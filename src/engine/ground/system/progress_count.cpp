@@ -24,8 +24,8 @@ ProgressCallback JointProgress::of(std::size_t piece) {
   };
 }
 
-Progress::Progress(const ProgressCallback& callback, Stage stage, std::size_t total)
-    : callback_(callback), stage_(stage), total_(std::max<std::size_t>(total, 1)) {
+Progress::Progress(const ProgressCallback& callback, Stage stage, std::size_t total, Units units)
+    : callback_(callback), stage_(stage), total_(std::max<std::size_t>(total, 1)), units_(units) {
   if (!callback_) return;
   tell(0);
   if (cancelled_) throw Cancelled();
@@ -42,7 +42,8 @@ void Progress::tell(std::size_t done) {
   // A thread that finds the callback busy does not wait for it: a progress bar needs no exact count.
   std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
-  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+  const auto units = static_cast<double>(done), total = static_cast<double>(total_);
+  const double share = units_ == Units::Known ? std::min(1.0, units / total) : units / (units + total);
   if (!callback_(stage_, share)) cancelled_ = true;
 }
 

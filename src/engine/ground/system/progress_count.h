@@ -25,11 +25,17 @@ class JointProgress {
   std::mutex mutex_;
 };
 
+/// How many units a stage has.
+enum class Units {
+  Known,   ///< As many as are named.
+  Unknown  ///< Half of the stage is shown once as many as are named are done, and ever less for each one after.
+};
+
 /// Carries one stage's progress from many threads to one callback.
 class Progress {
  public:
   /// `total` units of work make up the stage. An empty callback costs nothing and never cancels.
-  Progress(const ProgressCallback& callback, Stage stage, std::size_t total);
+  Progress(const ProgressCallback& callback, Stage stage, std::size_t total, Units units = Units::Known);
 
   /// Reports `count` more units. \throw Cancelled once the callback has returned false.
   void advance(std::size_t count);
@@ -40,6 +46,7 @@ class Progress {
   const ProgressCallback& callback_;
   Stage stage_;
   std::size_t total_;
+  Units units_;
   std::atomic<std::size_t> done_{0};
   std::atomic<bool> cancelled_{false};
   std::mutex mutex_;

@@ -85,9 +85,9 @@ class CurveWall final : public LayerWall {
 
 LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> heights, CurveFaults& faults,
                         Paths& paths, const ProgressCallback& callback) {
-  // Progress shows 100 % after this many rounds. Not measured.
+  // Half of the stage is shown as done after this many rounds. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
-  Progress progress(callback, Stage::Layers, kExpectedRounds);
+  Progress progress(callback, Stage::Layers, kExpectedRounds, Units::Unknown);
   const double z = curves.line().vertices.front()[2] + curves.line().origin[2];
   std::vector<Vec3d> source;
   source.reserve(curves.source.size());

@@ -14,6 +14,7 @@
 
 #include "ground/distances/in_metric.h"
 #include "ground/mesh/count_states.h"
+#include "ground/system/call_progress.h"
 #include "ground/system/parallel.h"
 #include "ground/system/stage_timer.h"
 #include "products/curves/curve_limit.h"
@@ -121,14 +122,16 @@ std::vector<OffsetResult> offset_curves(CurvesView curves, std::span<const Dista
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
   require_one_for_each_point(curves, distances);
   if (!options.metric.even()) return offset_curves_in_metric(curves, distances, options);
+  const OffsetOptions of_stages = with_call_progress(options);
   std::vector<OffsetResult> results = in_arena(options.threads, [&](int threads) {
     const Reach farthest = farthest_of(distances);
-    CurvePlan plan = plan_ribbon(curves, options, threads, farthest, {.results = distances.size()});
+    CurvePlan plan = plan_ribbon(curves, of_stages, threads, farthest, {.results = distances.size()});
     if (!goes_anywhere(farthest)) return results_at_source(curves, plan, distances, options.keep_paths);
-    PreparedCurves prepared(curves, options, std::move(plan));
+    PreparedCurves prepared(curves, of_stages, std::move(plan));
     return offset_prepared(prepared, distances);
   });
   for (OffsetResult& result : results) count_states(result.states, result.statistics);
+  report_share(of_stages.progress, Stage::Measure, 1);
   return results;
 }
 

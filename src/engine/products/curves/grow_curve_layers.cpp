@@ -11,6 +11,7 @@
 
 #include "ground/distances/layer_heights.h"
 #include "ground/mesh/count_states.h"
+#include "ground/system/call_progress.h"
 #include "ground/system/stage_timer.h"
 #include "products/curves/curve_layer_grower.h"
 #include "products/curves/curve_limit.h"
@@ -118,13 +119,15 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
 LayersResult grow_curve_layers(CurvesView curves, std::span<const Distances> heights, const OffsetOptions& options) {
   require_one_for_each_point(curves, heights);
   require_heights(heights, curves.positions.size());
+  const OffsetOptions of_stages = with_call_progress(options);
   LayersResult result = in_arena(options.threads, [&](int threads) {
     PreparedCurves prepared(
-        curves, options,
-        plan_ribbon(curves, options, threads, farthest_of(heights.last(1)), {.layers = heights.size()}));
+        curves, of_stages,
+        plan_ribbon(curves, of_stages, threads, farthest_of(heights.last(1)), {.layers = heights.size()}));
     return grow_on(prepared, heights);
   });
   count_states(result.states, result.statistics);
+  report_share(of_stages.progress, Stage::Measure, 1);
   return result;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "products/curves/prepared_curves.h"
+#include "ground/system/call_progress.h"
 
 #include <algorithm>
 #include <string>
@@ -60,6 +61,8 @@ CurvePlan plan_ribbon(CurvesView curves, const OffsetOptions& options, int threa
   planned.grid = plan_grid(planned.ribbon, farthest, grid, options.max_memory, threads,
                            {.bytes = bytes_of_run(curves, options, yield), .slab = true});
   planned.grid.reason = chosen.reason;
+  const auto points = static_cast<double>(curves.positions.size() * yield.results);
+  expect_stages(options.progress, expected_seconds(static_cast<double>(planned.grid.leaf_nodes), 0, points));
   statistics.plan = planned.grid;
   return planned;
 }

@@ -8,10 +8,9 @@
 // elsewhere (source_lookup.cpp).
 #include "vdb_offset/iso_surface.h"
 
-#include "ground/system/progress_count.h"
-
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
+#include "ground/system/call_progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +20,7 @@
 #include "ground/numbers/rounding.h"
 #include "ground/system/memory.h"
 #include "ground/system/parallel.h"
+#include "ground/system/progress_count.h"
 #include "ground/system/stage_timer.h"
 #include "ground/system/thread_count.h"
 #include "products/iso/iso_grid.h"
@@ -41,6 +41,8 @@ namespace {
 // The number of lattices that are tried: on each, faults that could not be mended on the one before are met anew. Not
 // measured.
 constexpr std::size_t kLattices = 4;
+// Seconds that stages take for each leaf node that is planned, for the progress alone. Measured on four models at 1 %.
+constexpr double kIsoRasterise = 3e-4, kIsoCapture = 5e-4, kIsoMend = 1e-4, kIsoMeasure = 8e-5;
 /// The lattice of an attempt. Flat parts of models often lie at round coordinates, and so do their offsets at round
 /// distances; the corners of lattices, in voxels, are irrational, as are their sums and differences.
 Lattice lattice_of(std::size_t attempt, double voxel_size) {
@@ -71,6 +73,7 @@ class IsoSurfaceMaker {
       Topology topology = check_topology(left);
       written = std::move(topology.written);
       valid = topology.valid;
+      if (!valid) expect_attempt();
       result_.statistics.attempts = attempt + 1;
     }
     measure_vertices();
@@ -83,6 +86,8 @@ class IsoSurfaceMaker {
   const Inside& inside() const { return result_.source->inside; }
 
   void prepare();
+  /// Has an attempt, and the measurement after it, make up what is left of the progress.
+  void expect_attempt() const;
   Surface extract(const Lattice& lattice);
   MeshFaults mend_on_surface(Surface& mesh);
   void merge_where_flat(Surface& mesh);
@@ -160,6 +165,8 @@ void IsoSurfaceMaker::prepare() {
   const Solids solids = find_solids(surface, options_, statistics);
   const IsoPlan plan = plan_voxels(surface, options_, solids.has_inside);
   statistics.plan = plan;
+  expect_attempt();
+  report_share(options_.progress, Stage::Rasterise, 0);
   h_ = plan.voxel_size;
   to_local_frame(surface, h_);
   result_.source =
@@ -169,6 +176,17 @@ void IsoSurfaceMaker::prepare() {
     statistics.solid.cut = boundary->cut;
   }
   level_.emplace(result_.source->query, inside(), level_of(inside(), options_.distance), h_);
+}
+
+void IsoSurfaceMaker::expect_attempt() const {
+  const auto leaves = static_cast<double>(result_.statistics.plan.leaf_nodes);
+  StageSeconds seconds{};
+  const auto of = [&](Stage stage) -> double& { return seconds[static_cast<std::size_t>(stage)]; };
+  of(Stage::Rasterise) = kIsoRasterise * leaves;
+  of(Stage::Capture) = kIsoCapture * leaves;
+  of(Stage::Limit) = kIsoMend * leaves;
+  of(Stage::Measure) = kIsoMeasure * leaves;
+  expect_stages(options_.progress, seconds);
 }
 
 Surface IsoSurfaceMaker::extract(const Lattice& lattice) {
@@ -332,8 +350,10 @@ IsoResult make_iso_surface(PolygonView mesh, const IsoOptions& options) {
   require_usable(options);
   const int threads = thread_count(options.threads);
   IsoResult result;
+  const IsoOptions of_stages = with_call_progress(options);
   tbb::task_arena arena(threads);
-  arena.execute([&] { result = IsoSurfaceMaker(mesh, options, threads).run(); });
+  arena.execute([&] { result = IsoSurfaceMaker(mesh, of_stages, threads).run(); });
+  report_share(of_stages.progress, Stage::Measure, 1);
   return result;
 }
 

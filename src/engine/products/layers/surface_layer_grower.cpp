@@ -259,9 +259,9 @@ class SurfaceWall final : public LayerWall {
 LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
                         Paths& paths, const ProgressCallback& callback) {
-  // Progress shows 100 % after this many rounds. Not measured.
+  // Half of the stage is shown as done after this many rounds. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
-  Progress progress(callback, Stage::Layers, kExpectedRounds);
+  Progress progress(callback, Stage::Layers, kExpectedRounds, Units::Unknown);
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
   AskedLayers asked(source, constrained.moving_part.surface().origin, heights);
   asked.stretch_mitred(paths);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "ground/numbers/rounding.h"
+#include "ground/system/call_progress.h"
 #include "ground/system/parallel.h"
 #include "products/offset/field_stage.h"
 #include "products/offset/fit_parts.h"
@@ -33,8 +34,7 @@ constexpr double kBeyond = 3e-7, kFarEnough = 1e-6;
 // The least gain of a part, as a share of what it goes farther inward, that the next round reckons with: what a
 // part goes at once is at most seven times what it lacks. Not measured.
 constexpr double kLeastFitGain = 0.15;
-// A part that gains less than this share of what another one at the same place does stays for that. Not measured.
-constexpr double kLeastOfBest = 0.5;
+constexpr double kLeastOfBest = 0.5;  // of the gain of another part at the same place; with less, a part stays
 // The share of a corner below which a point of a triangle is on the edge across from it. Reasoned: far above rounding.
 constexpr double kOnEdge = 1e-6;
 // How far inside of a triangle what touches its rim is placed, as a share of the way to its middle. Not measured.
@@ -158,20 +158,20 @@ class Fitting {
     FitFacts facts = facts_at_start();
     if (short_ > 0) deepen();
     for (const double depth : depth_) facts.deepest = std::max(facts.deepest, depth);
-    OffsetStatistics statistics = plan_offset(mesh_, to_depths());
+    OffsetStatistics statistics = plan_offset(mesh_, to_depths(0));
     if (facts.deepest == 0) statistics.plan.bytes = kProcessBytes + options_.bytes_held;
     statistics.fit = facts;
     return statistics;
   }
 
   OffsetResult run() {
-    OffsetResult best = offset(mesh_, to_depths());
+    OffsetResult best = offset(mesh_, to_depths(0));
     FitFacts facts = facts_at_start();
     auto best_so_far = std::pair(short_, -gap_);
     std::size_t fruitless = 0;
     for (std::size_t round = 0; short_ > 0 && round < kMostOffsets && fruitless < kPatience && deepen(); ++round) {
-      OffsetResult next = offset(mesh_, to_depths());
       facts.rounds = round + 1;
+      OffsetResult next = offset(mesh_, to_depths(facts.rounds));
       find_stuck(next);
       measure_gaps(next.positions);
       if (const auto is = std::pair(short_, -gap_); is < best_so_far) {
@@ -197,7 +197,7 @@ class Fitting {
   }
 
   /// Options with the distances of vertices and of corners of faces, by what their parts have to go.
-  OffsetOptions to_depths() const {
+  OffsetOptions to_depths(std::size_t round) const {
     std::vector<double> each(mesh_.positions.size(), 0.0), at_corner(mesh_.corners.size(), 0.0);
     std::vector<double> sum(surface_.vertices.size(), 0.0), count(surface_.vertices.size(), 0.0);
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
@@ -213,6 +213,7 @@ class Fitting {
     for (std::size_t v = 0; v < each.size(); ++v)
       if (const auto w = surface_.welded[v]; w != kNone && count[w] > 0) each[v] = 0 - sum[w] / count[w];
     OffsetOptions options = options_;
+    options.progress = part_of_round(options_.progress, round);
     options.distance = Distances(std::move(each), std::move(at_corner));
     return options;
   }
@@ -221,10 +222,7 @@ class Fitting {
   /// what they were to grow.
   void measure_gaps(std::span<const Vec3d> positions) {
     positions_.resize(surface_.vertices.size());
-    for (std::size_t w = 0; w < positions_.size(); ++w) {
-      const auto v = surface_.representative[w];
-      positions_[w] = Rounding(options_.precision)(mesh_.positions[v], positions[v]);
-    }
+    for (std::uint32_t w = 0; w < positions_.size(); ++w) positions_[w] = as_written(positions, w);
     std::vector<double> before(near_.size());
     for (std::size_t t = 0; t < near_.size(); ++t) before[t] = near_[t].gap;
     std::vector<double> gaps(positions_.size());
@@ -376,15 +374,18 @@ class Fitting {
     facts.gap = least_gap(best.positions);
     facts.enclosed = count_enclosed(best.positions);
     best.statistics.fit = facts;
+    report_share(options_.progress, Stage::Measure, 1);
+  }
+
+  Vec3d as_written(std::span<const Vec3d> positions, std::uint32_t w) const {
+    const auto v = surface_.representative[w];
+    return Rounding(options_.precision)(mesh_.positions[v], positions[v]);
   }
 
   /// The least gap of all, even if it is above the clearance.
   double least_gap(std::span<const Vec3d> positions) const {
-    const auto at = [&](std::uint32_t w) {
-      const auto v = surface_.representative[w];
-      return Rounding(options_.precision)(mesh_.positions[v], positions[v]);
-    };
     double least = std::numeric_limits<double>::infinity();
+    const auto at = [&](std::uint32_t w) { return as_written(positions, w); };
     for (std::uint32_t w = 0; w < surface_.vertices.size(); ++w) least = std::min(least, other_.gap_at(at(w)));
     if (least < 0) return least;
     for (const auto& [a, b, c] : surface_.triangles)
@@ -421,8 +422,7 @@ class Fitting {
   std::vector<std::uint8_t> stuck_;   // of each vertex: 1 if it cannot go any farther
   std::vector<Near> near_;            // of each triangle
   std::map<std::uint32_t, std::map<std::uint32_t, double>> at_vertex_;  // of a round, as sides_at() of vertices
-  std::vector<double> told_,
-      gain_;  // of each triangle: how far its nearest point was to go, and the share it got of that
+  std::vector<double> told_, gain_;  // of each triangle: how far its nearest point was to go, and its share of that
   std::vector<double> vertex_gap_, vertex_told_, vertex_gain_;  // of each vertex: its gap, and these two
   std::vector<Vec3d> positions_;                                // of each vertex
   std::size_t short_ = 0;                                       // triangles that are too near

@@ -12,6 +12,7 @@
 #include "ground/distances/layer_heights.h"
 #include "ground/mesh/count_states.h"
 #include "ground/system/assert.h"
+#include "ground/system/call_progress.h"
 #include "ground/system/parallel.h"
 #include "ground/system/stage_timer.h"
 #include "products/layers/growth_columns.h"
@@ -199,12 +200,14 @@ LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, c
   if (!options.metric.even()) throw InvalidInput("metric: expected one in which all axes count alike, for layers");
   const Reach farthest = farthest_of(heights.last(1));
   VDB_OFFSET_ASSERT(goes_anywhere(farthest));
+  const OffsetOptions of_stages = with_call_progress(options);
   LayersResult result = in_arena(options.threads, [&](int threads) {
     const InMetric space(mesh, options.metric);
-    PreparedMesh prepared(space, options, threads, farthest, {.layers = heights.size()});
+    PreparedMesh prepared(space, of_stages, threads, farthest, {.layers = heights.size()});
     return grow_on(prepared, heights, rules);
   });
   count_states(result.states, result.statistics);
+  report_share(of_stages.progress, Stage::Measure, 1);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ground/mesh/count_states.h"
+#include "ground/system/call_progress.h"
 #include "products/offset/field_stage.h"
 #include "products/offset/make_results.h"
 #include "products/offset/moved_input.h"
@@ -60,12 +61,14 @@ std::vector<OffsetResult> offset_several(PolygonView mesh, std::span<const Dista
   if (distances.empty()) throw InvalidInput("offset: expected a distance, got none");
   require_usable(mesh, distances, options);
   require_metric(options);
+  const OffsetOptions of_stages = with_call_progress(options);
   std::vector<OffsetResult> results = in_arena(options.threads, [&](int threads) {
     const InMetric space(mesh, options.metric);
-    PreparedMesh prepared(space, options, threads, farthest_of(distances), yield_of(distances, 0));
+    PreparedMesh prepared(space, of_stages, threads, farthest_of(distances), yield_of(distances, 0));
     return offset_prepared(prepared, distances);
   });
   for (OffsetResult& result : results) count_states(result.states, result.statistics);
+  report_share(of_stages.progress, Stage::Measure, 1);
   return results;
 }
 

@@ -14,6 +14,7 @@
 
 #include "ground/numbers/rounding.h"
 #include "ground/system/assert.h"
+#include "ground/system/call_progress.h"
 #include "ground/system/memory.h"
 #include "ground/system/stage_timer.h"
 #include "motion/parts/border_facts.h"
@@ -48,6 +49,14 @@ Paths paths_of_all(const MeshParts& parts, Paths of_part) {
   return paths;
 }
 
+// Seconds that layers take for each vertex, and for each of its layers. Measured on scans of 60,000 to 200,000
+// triangles with 1 to 20 layers.
+constexpr double kLayersVertex = 2e-6, kLayerVertex = 6e-7;
+
+// What making a result valid is reckoned to take for each vertex before it is known whether anything is faulty: with
+// it, about half of a run is shown as done by then.
+constexpr double kMendLikely = 1.5e-5;
+
 bool is_open(const MeshFacts& facts) { return !facts.closed() || !facts.oriented(); }
 
 /// What the run takes besides its grid and the moving part.
@@ -64,6 +73,17 @@ RunBytes bytes_of_run(const MeshParts& parts, PolygonView mesh, const OffsetOpti
   if (options.off_source) bytes.after_grid += shell_bytes(mesh, surface);
   if (yield.has_targets) bytes.after_grid += refinement_bytes(mesh, surface);
   return bytes;
+}
+
+/// What is left of a run once the mesh is sorted into parts.
+StageSeconds seconds_after_parts(const GridPlan& plan, double vertices, const Yield& yield) {
+  StageSeconds seconds = expected_seconds(static_cast<double>(plan.leaf_nodes), 0, vertices);
+  const auto results = static_cast<double>(yield.results), layers = static_cast<double>(yield.layers);
+  seconds[static_cast<std::size_t>(Stage::Limit)] += vertices * kMendLikely;
+  for (const Stage stage : {Stage::Propagate, Stage::Limit, Stage::Measure})
+    seconds[static_cast<std::size_t>(stage)] *= results;
+  seconds[static_cast<std::size_t>(Stage::Layers)] = vertices * (kLayersVertex + layers * kLayerVertex);
+  return seconds;
 }
 
 }  // namespace
@@ -101,6 +121,10 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
       corners_(options.corners.value_or(yield.layers > 0 ? Corners::Round : Corners::Miter)) {
   const bool moves = goes_anywhere(farthest);
   GridPlan plan;
+  const auto corners = static_cast<double>(mesh_.corners.size()), faces = static_cast<double>(mesh_.face_count()),
+             vertices = static_cast<double>(mesh_.positions.size());
+  expect_stages(options.progress, expected_seconds(0, corners - 2 * faces, vertices));
+  report_share(options.progress, Stage::Rasterise, 0);
   {
     const StageTimer timer(statistics_.seconds, Stage::Rasterise);
     parts_ = build_mesh_parts(mesh_, {options.only, options.obstacles, weld_for(options, yield), options.orient});
@@ -115,6 +139,8 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
     }
   }
   statistics_.plan = plan;
+  report_share(options.progress, Stage::Rasterise, 1);
+  expect_stages(options.progress, seconds_after_parts(plan, vertices, yield));
   if (moves) reserve_memory(options.reserve, plan.bytes);
   if (moves && !yield.has_targets) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "ground/system/call_progress.h"
 #include "space/field/field_grids.h"
 #include "space/field/run_bytes.h"
 #include "space/surface/surface.h"
@@ -31,6 +32,10 @@ GridPlan plan_grid(const Surface& surface, const Reach& farthest, const GridOpti
 /// Plans the grid for one distance, negative inward.
 GridPlan plan_grid(const Surface& surface, double distance, const GridOptions& options, std::size_t max_memory,
                    int threads);
+
+/// Seconds of one thread that the stages of a run are expected to take where nothing is to be mended.
+/// \param leaves leaf nodes of the grid, 0 without one
+StageSeconds expected_seconds(double leaves, double triangles, double vertices);
 
 /// \throw InvalidInput for a diagonal, a distance (world units, > 0) or a grid that no field can be made for.
 void require_plannable(double diagonal, double distance, const GridOptions& options);
