@@ -102,8 +102,8 @@ struct VDB_OFFSET_API LayersResult {
   std::vector<Distances> heights;   ///< Asked of each input vertex, one set a layer; all of one sign.
   std::vector<double> share;        ///< Of each input vertex: the share of its heights that it keeps, 0 .. 1.
   std::vector<VertexState> states;  ///< Of the outermost surface's vertices.
-  /// Exact distance of the outermost surface's vertices, and of the first layer's, world units; of mitred vertices that
-  /// of the faces beside them.
+  /// Exact distance of the outermost surface's vertices, and of the first layer's, world units; of mitered vertices
+  /// that of the faces beside them.
   std::vector<double> achieved, first_achieved;
   /// Of each face of the input: 0 if it carries no layers, since it is not offset or has no area; 1 if it carries
   /// layers; 2 or 3 if it is a quad that carries them as two triangles, on both sides of its diagonal from corner 0

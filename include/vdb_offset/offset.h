@@ -90,10 +90,10 @@ struct CheckResult {
   double distance = 0;  ///< The distance asked for, or found, world units; the farthest if vertices differ.
   Distances distances;  ///< The distance of each vertex of the source.
   MeshFacts facts;      ///< Of the source.
-  /// Of each vertex of the source: Reached (to 1e-6 of the distance and the rounding of coordinates), Mitred or Cut
-  /// (at the end of its miter, as exactly; Mitred also elsewhere on the planes of all its faces, moved by the distance,
-  /// or at the nearest point of some where all have no point in common, within the miter limit), Limited (nearer or
-  /// farther) or Unused.
+  /// Of each vertex of the source: Reached (to 1e-6 of the distance and the rounding of coordinates), Mitered or Cut
+  /// (at the end of its miter, as exactly; Mitered also elsewhere on the planes of all its faces, moved by the
+  /// distance, or at the nearest point of some where all have no point in common, within the miter limit), Limited
+  /// (nearer or farther) or Unused.
   std::vector<VertexState> states;
   std::vector<double> achieved;  ///< Of each vertex: the exact distance to the source, world units.
   std::size_t beyond = 0;        ///< Vertices farther than the distance.

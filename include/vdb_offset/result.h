@@ -25,7 +25,7 @@ enum class VertexState : std::uint8_t {
   Limited,       ///< Held back to keep the result valid.
   OutsideField,  ///< Left the voxels that the field covers before it arrived.
   Unused,        ///< In no face; it stays where it is.
-  Mitred,        ///< Where the planes around it meet, moved by the distance: itself farther off. See Corners::Miter.
+  Mitered,       ///< Where the planes around it meet, moved by the distance: itself farther off. See Corners::Miter.
   Cut,  ///< On the way there, as far as the miter limit allows: farther off than the distance, its faces short.
 };
 
@@ -112,12 +112,12 @@ struct FaceError {
 /// What became of the vertices on creases that move, with Corners::Miter. Vertices that are welded count once.
 struct MiterFacts {
   std::size_t on_creases = 0;
-  std::size_t mitred = 0, cut = 0;  ///< Vertices in these states.
+  std::size_t mitered = 0, cut = 0;  ///< Vertices in these states.
   std::size_t unproven = 0;  ///< No point is on all planes or little beyond, or something else is nearer to it, or
                              ///< an obstacle is in the way.
   std::size_t taken_back =
       0;              ///< Proven, and elsewhere in the end: their faces would have been faulty, or had no room.
-  double excess = 0;  ///< Of mitred vertices, the most by which a plane goes farther than the distance, as a share of
+  double excess = 0;  ///< Of mitered vertices, the most by which a plane goes farther than the distance, as a share of
                       ///< it: where more planes meet than one point can be on.
 };
 

@@ -6,7 +6,7 @@
 >>> faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 >>> result = vdb_offset.offset(vertices, faces, 0.1, corners="miter")
 >>> result.positions.shape, result.state_names[0]
-((4, 3), 'mitred')
+((4, 3), 'mitered')
 >>> np.round(result.positions[0], 9).tolist()
 [-0.1, -0.1, -0.1]
 

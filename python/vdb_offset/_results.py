@@ -35,7 +35,7 @@ class _Vertices:
         there are none. As the command counts them."""
         counts = np.bincount(self.states, minlength=len(_core.states))
         used = counts.sum() - counts[_core.states.index("unused")]
-        return 1.0 if used == 0 else float(counts[[_core.states.index(s) for s in ("reached", "mitred", "cut")]].sum() / used)
+        return 1.0 if used == 0 else float(counts[[_core.states.index(s) for s in ("reached", "mitered", "cut")]].sum() / used)
 
 
 @dataclass(frozen=True, eq=False)

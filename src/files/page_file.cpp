@@ -32,7 +32,7 @@ std::vector<float> weights_of(const Page& page, const std::vector<std::vector<fl
       const std::span<const VertexState> states = page.surfaces[s].states;
       const bool is_short = !states.empty() && falls_short(states[v]);
       const float off = std::isnan(shares[s][v]) ? 0.0F : std::abs(1 - shares[s][v]);
-      // A vertex that falls short comes before all that are mitred.
+      // A vertex that falls short comes before all that are mitered.
       weights[v] = std::max(weights[v], is_short ? 1e6F + off : off);
     }
   return weights;

@@ -181,7 +181,7 @@ TEST_CASE("cad held: what an obstacle is in the way of is never called whole", "
   const Polygons small = box(Vec3d(30, 22, 25), Vec3d(30.02, 22.02, 25.02));
   how.obstacles = small.view();
   CHECK(io::write_cad(place_for("enclosed.step"), block, 12, {}, how).made == Made::Faces);
-  // One that only a mitred edge comes near to.
+  // One that only a mitered edge comes near to.
   const Polygons at_edge = box(Vec3d(43.05, 33.05, 5), Vec3d(50, 50, 15));
   how.obstacles = at_edge.view();
   how.clearance = 0.5;

@@ -1053,7 +1053,7 @@ TEST_CASE("command: an iso-surface whose corners would be rounded by more than v
 TEST_CASE("command: the command line's corners count, and not the scene's", "[command][scene]") {
   const ShellCommand run;
   const std::string scene = "'" + test::scenes_path() + "/miter_gear.json'";
-  CHECK_THAT(run(scene + " mitred.obj -v").out, Catch::Contains("(miters), 0 of them cut"));
+  CHECK_THAT(run(scene + " mitered.obj -v").out, Catch::Contains("(miters), 0 of them cut"));
   const Run round = run(scene + " round.obj -v --corners round");
   CHECK(round.code == 3);  // what the scene expects of faces
   CHECK_THAT(round.out, !Catch::Contains("(miters)"));

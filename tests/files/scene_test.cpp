@@ -53,7 +53,7 @@ TEST_CASE("scenes: every one runs as it expects", "[scene][no_races]") {
   CHECK(count >= 28);
 }
 
-TEST_CASE("scenes: corners are mitred up to a limit, and faces expected at the distance", "[scene]") {
+TEST_CASE("scenes: corners are mitered up to a limit, and faces expected at the distance", "[scene]") {
   const std::string cube = R"({"shape": {"type": "cube", "side": 1, "divisions": 2}, "offset": {"distance": 0.1)",
                     expected = R"(}, "expect": {"max_face_error": 0.01}})";
   const auto run = [&](const std::string& more) {

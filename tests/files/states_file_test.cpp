@@ -80,7 +80,7 @@ TEST_CASE("states: VTK reads back what a viewer colours by", "[states][vtk]") {
     CHECK(value(read->GetCellData(), "face_error", f) == result.face_errors[f]);
   }
   check_words(read, "group_words", groups.names);
-  check_words(read, "state_words", {"reached", "collision", "limited", "outside_field", "unused", "mitred", "cut"});
+  check_words(read, "state_words", {"reached", "collision", "limited", "outside_field", "unused", "mitered", "cut"});
 }
 
 TEST_CASE("states: curves and paths are lines", "[states][vtk]") {

@@ -233,10 +233,10 @@ void print(std::FILE* out, const CheckResult& result, bool curves) {
   const AchievedSummary achieved = summarise(result.states, result.achieved, result.distances);
   const char* const vertices = curves ? "points" : "vertices";
   const auto in = [&](VertexState state) { return std::count(result.states.begin(), result.states.end(), state); };
-  const auto mitred = in(VertexState::Mitred), cut = in(VertexState::Cut);
+  const auto mitered = in(VertexState::Mitered), cut = in(VertexState::Cut);
   fmt::print(out, "distance    {:.9g}: {:.3f} % of {} {} there{}{}, {} beyond, {} on the wrong side\n", result.distance,
              100 * achieved.share_reached, achieved.vertices, vertices,
-             mitred > 0 ? fmt::format(", {} of them mitred", mitred) : "",
+             mitered > 0 ? fmt::format(", {} of them mitered", mitered) : "",
              cut > 0 ? fmt::format(", {} with a miter that is cut", cut) : "", result.beyond, result.wrong_side);
   fmt::print(out, "achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
              achieved.least, achieved.quantile_01, achieved.quantile_05, achieved.median, achieved.quantile_95,

@@ -201,7 +201,7 @@ class Judge {
         asked_(asked),
         distance_(asked.outward - asked.inward),
         far_(asked.scale),
-        mitred_(sharp_edges_of(source), kMitreOverFace * far_),
+        mitered_(sharp_edges_of(source), kMitreOverFace * far_),
         options_(options) {}
 
   Verdict judge() {
@@ -285,12 +285,12 @@ class Judge {
       SoupPoint foot = source.closest(p.point);
       double share = foot.distance / far_;
       // Beyond a sharp edge its miter may lie over the inside of a third face: of much of a thin wall's two sides.
-      const auto is_mitred = [&] { return share > 1 + options_.tolerance && mitred_.has_near(p.point); };
-      foot.is_inside = foot.is_inside && !is_mitred();
+      const auto is_mitered = [&] { return share > 1 + options_.tolerance && mitered_.has_near(p.point); };
+      foot.is_inside = foot.is_inside && !is_mitered();
       if ((share < 1 - options_.tolerance || (foot.is_inside && share > 1 + options_.tolerance)) &&
           share > 1 - kDoubtful && doubts++ < kMostDoubts) {
         share = exact_distance(source_faces_, p.point, foot.is_inside, foot.distance) / far_;
-        foot.is_inside = foot.is_inside && !is_mitred();
+        foot.is_inside = foot.is_inside && !is_mitered();
       }
       verdict_.least = std::min(verdict_.least, share);
       verdict_.most = std::max(verdict_.most, share);
@@ -360,7 +360,7 @@ class Judge {
       const double way = result.closest(moved).distance / far_;
       if (way > worst) place = text_of(moved) + place_of(source, p, result, result.closest(moved));
       worst = std::max(worst, way);
-      if (way <= options_.tolerance || mitred_.has_near(moved)) continue;  // A miter may reach over it.
+      if (way <= options_.tolerance || mitered_.has_near(moved)) continue;  // A miter may reach over it.
       if (doubts++ < kMostDoubts)
         missing += exact_distance(source_faces_, moved) > far_ * (1 - 1e-3) &&
                    exact_distance(result_faces_, moved) > far_ * options_.tolerance;
@@ -375,7 +375,7 @@ class Judge {
   TopoDS_Shape source_faces_, result_faces_;
   AskedDistance asked_;
   double distance_, far_;  // an even one, and the scale
-  EdgePoints mitred_;      // the sharp edges
+  EdgePoints mitered_;     // the sharp edges
   JudgeOptions options_;
   Verdict verdict_;
   bool is_closed_ = false;

@@ -32,7 +32,7 @@ struct OffsetCadResult {
 };
 
 /// Offsets solids and shells as B-Rep: each face becomes a surface over the same (u, v), sharp edges are cut anew where
-/// two offset faces meet (mitred).
+/// two offset faces meet (mitered).
 OffsetCadResult offset_cad(const OffsetCadRequest& request);
 
 }  // namespace vdb_offset::cad

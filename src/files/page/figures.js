@@ -6,7 +6,7 @@
 const FIGURES = (function () {
   const byId = id => document.getElementById(id);
   const STATE_COLOURS = {reached: 0x6aaed6, collision: 0xf28e2b, limited: 0xd7191c, outside_field: 0xe377c2,
-                         unused: 0x999999, mitred: 0x7b3294, cut: 0xb48ad0};
+                         unused: 0x999999, mitered: 0x7b3294, cut: 0xb48ad0};
   const UNKNOWN = 0xb0b4b9;
   const SHARE_RAMP = [[0, 0xa50f15], [0.5, 0xf28e2b], [0.999, 0xffe9a8], [1, 0x6aaed6], [2, 0x7b3294]];
   const ERROR_RAMP = [[0, 0x6aaed6], [0.25, 0xffe9a8], [0.6, 0xf28e2b], [1, 0xa50f15]];

@@ -15,10 +15,10 @@
     limited: 'Held back: moving on would invert, collapse or cross faces.',
     outside_field: 'Its path left the grid of the distance field.',
     unused: 'No face uses it; it stays where it is.',
-    mitred: 'It moved farther than the distance, to where the planes of its faces meet, so that these faces are at the distance.',
+    mitered: 'It moved farther than the distance, to where the planes of its faces meet, so that these faces are at the distance.',
     cut: 'The miter limit stopped it on its way to where the planes of its faces meet.',
   };
-  const SHORT = ['collision', 'limited', 'outside_field'], FAR = ['mitred', 'cut'];
+  const SHORT = ['collision', 'limited', 'outside_field'], FAR = ['mitered', 'cut'];
 
   async function unpack() {
     const element = byId('arrays'), binary = atob(element.textContent);

@@ -13,7 +13,7 @@ const PLACES = (function () {
   // Calls visit(surface, off, vertices, element) for all that is shown: by what share of its distance a vertex, or a face if
   // there is an element, misses it. A vertex with a miter is meant to be off.
   function visitMisses(facts, data, view, isSurfaceShown, visit) {
-    const isMiter = facts.states.map(name => ['mitred', 'cut', 'unused'].includes(name));
+    const isMiter = facts.states.map(name => ['mitered', 'cut', 'unused'].includes(name));
     const isShown = data.source.mesh.group && view.shown ? view : null;
     data.surfaces.forEach((surface, i) => {
       if (!isSurfaceShown(i)) return;

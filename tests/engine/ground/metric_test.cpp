@@ -51,11 +51,11 @@ TEST_CASE("metric: a cube goes to the box whose planes are as far as their axes"
     }
     options = axis_options(0.1, 0.3);
     options.collision = collision;
-    const OffsetResult mitred = offset(cube.view(), options);
+    const OffsetResult mitered = offset(cube.view(), options);
     for (std::size_t v = 0; v < cube.positions.size(); ++v)
       for (int k = 0; k < 3; ++k)
         if (const double p = cube.positions[v][k]; std::abs(p) == 0.5)
-          CHECK(mitred.positions[v][k] == Approx(p < 0 ? -0.5 - (k == 2 ? 0.3 : 0.1) : 0.5 + (k == 2 ? 0.3 : 0.1)));
+          CHECK(mitered.positions[v][k] == Approx(p < 0 ? -0.5 - (k == 2 ? 0.3 : 0.1) : 0.5 + (k == 2 ? 0.3 : 0.1)));
     options.corners = Corners::Round;
     const OffsetResult out = offset(cube.view(), options);
     CHECK(test::share(out, VertexState::Reached) == 1);

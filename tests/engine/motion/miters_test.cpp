@@ -192,7 +192,7 @@ double diagonal(const Polygons& mesh) {
   return (most - least).length();
 }
 
-OffsetOptions mitred(Distances distance) {
+OffsetOptions mitered(Distances distance) {
   OffsetOptions options;
   options.distance = std::move(distance);
   options.corners = Corners::Miter;
@@ -238,10 +238,10 @@ TEST_CASE("miter: all faces of polyhedra are at the distance, on both sides", "[
     for (const double share : {0.01, 0.05, -0.01, -0.05}) {
       CAPTURE(name, share);
       const double distance = share * diagonal(mesh);
-      const OffsetOptions options = mitred(distance);
+      const OffsetOptions options = mitered(distance);
       const OffsetResult result = offset(mesh.view(), options);
       CHECK(worst_off_planes(mesh.view(), result) <= 1e-9 * std::abs(distance));
-      CHECK(in_state(result, VertexState::Mitred) + in_state(result, VertexState::Reached) == mesh.positions.size());
+      CHECK(in_state(result, VertexState::Mitered) + in_state(result, VertexState::Reached) == mesh.positions.size());
       CHECK(result.statistics.faces.worst <= 1e-9);
       CHECK(result.statistics.faces.at_distance == 1);
       require_valid(mesh.view(), result, options);
@@ -258,7 +258,7 @@ TEST_CASE("miter: inward at convex edges, and outward at concave ones, it is wha
       {"tetrahedron", tetrahedron(), -0.17}};
   for (const auto& [name, mesh, distance] : kShapes) {
     CAPTURE(name);
-    OffsetOptions options = mitred(distance);
+    OffsetOptions options = mitered(distance);
     const OffsetResult miter = offset(mesh.view(), options);
     options.corners = Corners::Round;
     const OffsetResult round = offset(mesh.view(), options);
@@ -315,7 +315,7 @@ TEST_CASE("miter: where fronts meet, round corners keep to their paths", "[miter
 TEST_CASE("miter: what is smooth has the same bits as with round corners", "[miter]") {
   for (const Polygons& mesh : {shapes::bumpy_sphere(1, 0.1, 4, 3, 4), shapes::torus(1, 0.3, 40, 20)})
     for (const double distance : {0.05, -0.05}) {
-      OffsetOptions options = mitred(distance);
+      OffsetOptions options = mitered(distance);
       const OffsetResult miter = offset(mesh.view(), options);
       options.corners = Corners::Round;
       CHECK((miter.positions == offset(mesh.view(), options).positions));
@@ -326,42 +326,42 @@ TEST_CASE("miter: uneven distances hold on the faces at each vertex", "[miter]")
   const Polygons box = shapes::box(Vec3d(1), 4, false);
   std::vector<double> each;
   for (const Vec3d& p : box.positions) each.push_back(0.05 + 0.02 * p[0]);
-  const OffsetResult result = offset(box.view(), mitred(Distances(each)));
+  const OffsetResult result = offset(box.view(), mitered(Distances(each)));
   CHECK(worst_off_planes(box.view(), result) <= 1e-9);
-  CHECK(in_state(result, VertexState::Mitred) == 44);  // three on each edge, and the corners
+  CHECK(in_state(result, VertexState::Mitered) == 44);  // three on each edge, and the corners
 }
 
 TEST_CASE("miter: sharper edges than the limit allows are cut there", "[miter]") {
   const double angle = 10 * std::numbers::pi / 180;
   const Polygons blade = prism({{0, 0}, {2, -2 * std::tan(angle / 2)}, {2, 2 * std::tan(angle / 2)}}, 1);
-  OffsetOptions options = mitred(0.05);
+  OffsetOptions options = mitered(0.05);
   const OffsetResult cut = offset(blade.view(), options);
   CHECK(cut.states[0] == VertexState::Cut);
   CHECK((cut.positions[0] - blade.positions[0]).length() == Approx(4 * 0.05));
   CHECK(in_state(cut, VertexState::Cut) == 2);
-  CHECK(in_state(cut, VertexState::Mitred) == 4);
+  CHECK(in_state(cut, VertexState::Mitered) == 4);
   require_valid(blade.view(), cut, options);
   options.miter_limit = 20;
   const OffsetResult whole = offset(blade.view(), options);
-  CHECK(whole.states[0] == VertexState::Mitred);
+  CHECK(whole.states[0] == VertexState::Mitered);
   CHECK(worst_off_planes(blade.view(), whole) <= 1e-10);
 }
 
 TEST_CASE("miter: where something else is nearer, vertices go where round corners have them", "[miter]") {
-  // In a slot narrower than twice the distance the mitred rims would run into each other.
+  // In a slot narrower than twice the distance the mitered rims would run into each other.
   const Outline kSlotted = {{0, 0}, {3, 0}, {3, 1}, {1.6, 1}, {1.6, 0.5}, {1.4, 0.5}, {1.4, 1}, {0, 1}};
   const Polygons slotted = prism(kSlotted, 1);
-  const OffsetOptions options = mitred(0.15);
+  const OffsetOptions options = mitered(0.15);
   const OffsetResult result = offset(slotted.view(), options);
   CHECK(result.statistics.miters.on_creases == 16);
   CHECK(result.statistics.miters.unproven + result.statistics.miters.taken_back >= 8);
-  CHECK(in_state(result, VertexState::Mitred) >= 4);
+  CHECK(in_state(result, VertexState::Mitered) >= 4);
   require_valid(slotted.view(), result, options);
   // An obstacle within the miter's reach, and not within the distance.
   const Polygons cube = prism(kSquare, 1);
   Polygons wall = shapes::box(Vec3d(4, 4, 0.1), 1, false);
   for (Vec3d& p : wall.positions) p += Vec3d(0, 0, 1.2);
-  OffsetOptions beside = mitred(0.1);
+  OffsetOptions beside = mitered(0.1);
   beside.obstacles = wall.view();
   beside.clearance = 0.06;
   const OffsetResult kept_off = offset(cube.view(), beside);
@@ -372,7 +372,7 @@ TEST_CASE("miter: what has no room in a slot leaves the faces of the plate aroun
   // Before, untangling the slot's ends moved the plate's corners: 37 and 30 % off, 25 and 0.7 % of the area within 1 %.
   for (const double waves : {0.2, 0.4}) {
     const Polygons plate = slotted_plate(100, 0.4, waves);
-    const OffsetOptions options = mitred(0.4);
+    const OffsetOptions options = mitered(0.4);
     const OffsetResult result = offset(plate.view(), options);
     require_valid(plate.view(), result, options);
     CHECK(in_state(result, VertexState::Limited) + in_state(result, VertexState::Collision) == 0);
@@ -390,9 +390,9 @@ TEST_CASE("miter: of five planes that have no common point all are as far or far
   roof.corners = {4, 3, 2, 1, 0};
   roof.close_face();
   for (std::uint32_t i = 0; i < 5; ++i) roof.add_face({i, (i + 1) % 5, 5});
-  const OffsetOptions options = mitred(0.05);
+  const OffsetOptions options = mitered(0.05);
   const OffsetResult result = offset(roof.view(), options);
-  CHECK(result.states[5] == VertexState::Mitred);
+  CHECK(result.states[5] == VertexState::Mitered);
   CHECK(result.statistics.miters.excess > 0.001);
   CHECK(result.statistics.miters.excess < 0.5);
   double least = 1, most = 0;
@@ -423,9 +423,9 @@ TEST_CASE("miter: two boxes that share an edge stay apart there", "[miter]") {
     for (const auto v : one.view().face(f)) two.corners.push_back(v + count);
     two.close_face();
   }
-  const OffsetOptions options = mitred(0.05);
+  const OffsetOptions options = mitered(0.05);
   const OffsetResult result = offset(two.view(), options);
-  CHECK(in_state(result, VertexState::Mitred) >= 8);
+  CHECK(in_state(result, VertexState::Mitered) >= 8);
   CHECK(result.statistics.limit.left.total() == 0);
   // What is off is so for the edge of four faces, whose ends have no miters, and not for want of vertices.
   REQUIRE(result.statistics.faces.mean > 0.01);
@@ -442,7 +442,7 @@ TEST_CASE("miter: faces at the corners of curves, and a kerf of the right width"
         curve.corners.push_back(i % static_cast<std::uint32_t>(outline.size()));
       curve.close_face();
       const std::vector<Distances> distances{Distances(distance)};
-      const OffsetOptions options = mitred(distance);
+      const OffsetOptions options = mitered(distance);
       const OffsetResult result = offset_curves(curve.view(), distances, options).front();
       double worst = 0;
       for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -507,7 +507,7 @@ TEST_CASE("miter: the edge of a part meets the planes of the faces that stay", "
   for (const std::vector<std::uint8_t>& only : {std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0}, {0, 1, 1, 0, 0, 0}})
     for (const double distance : {0.05, -0.05}) {
       CAPTURE(only[2], distance);
-      OffsetOptions options = mitred(distance);
+      OffsetOptions options = mitered(distance);
       options.only = only;
       const OffsetResult result = offset(mesh.view(), options);
       double worst = 0;
@@ -526,7 +526,7 @@ TEST_CASE("miter: three planes are met at any angle, and those of a slanted pris
   for (Vec3d& p : slanted.positions)
     if (p[2] > 1) p[2] += 1.2 * p[0];
   for (const double distance : {0.05, -0.05}) {
-    const OffsetResult result = offset(slanted.view(), mitred(distance));
+    const OffsetResult result = offset(slanted.view(), mitered(distance));
     CHECK(worst_off_planes(slanted.view(), result) <= 1e-9 * std::abs(distance));
     CHECK(result.statistics.miters.excess < 1e-9);
   }
@@ -534,7 +534,7 @@ TEST_CASE("miter: three planes are met at any angle, and those of a slanted pris
 
 TEST_CASE("miter: a limit of 1 cuts all of them, and says so", "[miter]") {
   const Polygons cube = prism(kSquare, 1);
-  OffsetOptions options = mitred(0.1);
+  OffsetOptions options = mitered(0.1);
   options.miter_limit = 1;
   const OffsetResult result = offset(cube.view(), options);
   CHECK(in_state(result, VertexState::Cut) == 8);
@@ -550,7 +550,7 @@ TEST_CASE("miter: what has no room costs next to no distance that round corners 
   // if nothing were put elsewhere at the cost of what is in its way: 74, 55 and 48 %, and 3.2, 5.4 and 6.3 %.
   for (const auto& [distance, share, off] : {std::tuple(0.1, 0.75, 0.03), {0.15, 0.59, 0.05}, {0.2, 0.51, 0.056}}) {
     CAPTURE(distance);
-    OffsetOptions options = mitred(distance);
+    OffsetOptions options = mitered(distance);
     const OffsetResult miter = offset(gear.view(), options);
     require_valid(gear.view(), miter, options);
     options.corners = Corners::Round;
@@ -577,7 +577,7 @@ TEST_CASE("miter: where fronts merge, no more faces fold or cross than with roun
     options.corners = corners;
     const OffsetResult result = offset(gear.view(), options);
     CHECK(in_state(result, VertexState::Limited) == 0);
-    CHECK((in_state(result, VertexState::Mitred) > 500) == (corners == Corners::Miter));
+    CHECK((in_state(result, VertexState::Mitered) > 500) == (corners == Corners::Miter));
     CheckOptions check;
     check.distance = distance;
     check.corners = corners;
@@ -598,13 +598,13 @@ TEST_CASE("miter: corners that face each other across a gap are alike", "[miter]
     for (const auto v : one.view().face(f)) two.corners.push_back(v + count);
     two.close_face();
   }
-  const OffsetOptions options = mitred(0.1);
+  const OffsetOptions options = mitered(0.1);
   const OffsetResult result = offset(two.view(), options);
   require_valid(two.view(), result, options);
-  // Each box's far corners are mitred; of those across the gap none is, as the other box is nearer than their own.
+  // Each box's far corners are mitered; of those across the gap none is, as the other box is nearer than their own.
   for (std::uint32_t v = 0; v < 2 * count; ++v) {
     const bool faces_gap = v < count ? two.positions[v][0] == 1 : two.positions[v][0] < 1.5;
-    CHECK((result.states[v] == VertexState::Mitred) == !faces_gap);
+    CHECK((result.states[v] == VertexState::Mitered) == !faces_gap);
   }
 }
 
@@ -617,7 +617,7 @@ TEST_CASE("miter: a chamfer along coarse round corners has all faces at the dist
         const Polygons block = stacked({{0, rounded_outline(facets, 4, 1)},
                                         {height, rounded_outline(facets, 4, 0)},
                                         {height + 5, rounded_outline(facets, 4, 0)}});
-        const OffsetOptions options = mitred(distance);
+        const OffsetOptions options = mitered(distance);
         const OffsetResult result = offset(block.view(), options);
         CHECK(result.statistics.miters.on_creases == block.positions.size());
         CHECK(worst_off_planes(block.view(), result) <= 1e-9 * std::abs(distance));
@@ -632,7 +632,7 @@ TEST_CASE("miter: a coarse cylinder that is cut aslant has all faces at the dist
   for (Vec3d& p : cut.positions)
     if (p[2] > 1) p[2] += p[0] * std::tan(50 * std::numbers::pi / 180);
   for (const double distance : {0.05, -0.05}) {
-    const OffsetOptions options = mitred(distance);
+    const OffsetOptions options = mitered(distance);
     const OffsetResult result = offset(cut.view(), options);
     CHECK(worst_off_planes(cut.view(), result) <= 1e-9 * std::abs(distance));
     require_valid(cut.view(), result, options);
@@ -644,7 +644,7 @@ TEST_CASE("miter: the tip of a cone goes to where its planes meet, however many 
     for (const double distance : {0.05, -0.05}) {
       CAPTURE(sides, distance);
       const Polygons mesh = cone_of(sides);
-      const OffsetOptions options = mitred(distance);
+      const OffsetOptions options = mitered(distance);
       const OffsetResult result = offset(mesh.view(), options);
       const double apothem = 2 * std::cos(std::numbers::pi / sides), slant = std::hypot(apothem, 4.0);
       const Vec3d tip(0, 0, 4 + distance * slant / apothem);
@@ -659,7 +659,7 @@ TEST_CASE("miter: what is nearer to its end than its own faces, and no nearer th
   for (const double gap : {4.2, 5.0, 6.5})
     for (const bool in_space : {false, true}) {
       CAPTURE(gap, in_space);
-      const OffsetOptions options = mitred(1);
+      const OffsetOptions options = mitered(1);
       if (in_space) {
         const Polygons mesh = both_of(prism(wedge(), 9), prism(wall_at(gap, 3), 9));
         const OffsetResult result = offset(mesh.view(), options);
@@ -683,7 +683,7 @@ TEST_CASE("miter: no miter is nearer to anything than the distance, nor beyond a
     CAPTURE(gap);
     const Curves curves = closed_curves({wedge(), wall_at(gap, thickness)});
     const std::vector<Distances> distances{Distances(1)};
-    const OffsetResult result = offset_curves(curves.view(), distances, mitred(1)).front();
+    const OffsetResult result = offset_curves(curves.view(), distances, mitered(1)).front();
     CHECK(result.statistics.miters.unproven == 1);
     CHECK(result.states[0] == VertexState::Reached);
     CHECK((result.positions[0] - Vec3d(1, 0, 0)).length() <= 1e-6);
@@ -695,7 +695,7 @@ TEST_CASE("miter: the hole of a letter has its apex where its sides meet, though
   const Curves letter = closed_curves(
       {{{0, 0}, {4, 0}, {6, 6}, {12, 6}, {14, 0}, {18, 0}, {11, 20}, {7, 20}}, {{9, 15}, {11, 9}, {7, 9}}});
   const std::vector<Distances> distances{Distances(-0.8)};
-  const OffsetResult result = offset_curves(letter.view(), distances, mitred(-0.8)).front();
+  const OffsetResult result = offset_curves(letter.view(), distances, mitered(-0.8)).front();
   CHECK((result.positions[8] - Vec3d(9, 15 + 0.8 * std::sqrt(10), 0)).length() <= 1e-9);
   CHECK(result.statistics.faces.worst <= 1e-9);
 }

@@ -100,7 +100,7 @@ TEST_CASE("check: what has passed a plane that is named is on the wrong side", "
   CHECK(check_offset(tube.view(), sunk, check).wrong_side == 4);
 }
 
-TEST_CASE("check: a corner on some of its planes alone is not mitred if all meet in a point", "[check][miter]") {
+TEST_CASE("check: a corner on some of its planes alone is not mitered if all meet in a point", "[check][miter]") {
   const Polygons cube = shapes::box(Vec3d(1), 1, false);
   std::vector<Vec3d> moved = cube.positions;
   for (Vec3d& x : moved)

@@ -209,7 +209,7 @@ TEST_CASE("curve ends: far from each other, or of several pieces", "[curves]") {
 }
 
 TEST_CASE("curves: where fronts merge, miters add no faults to those of round corners", "[curve][miter][random]") {
-  std::size_t mitred = 0, merged = 0;
+  std::size_t mitered = 0, merged = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> radius(0.4, 1.6);
@@ -228,7 +228,7 @@ TEST_CASE("curves: where fronts merge, miters add no faults to those of round co
         options.corners = corners;
         const Distances distances(distance);
         const OffsetResult result = offset_curves(star.view(), {&distances, 1}, options).front();
-        if (corners == Corners::Miter) mitred += result.statistics.miters.mitred;
+        if (corners == Corners::Miter) mitered += result.statistics.miters.mitered;
         CheckOptions check;
         check.distance = distance;
         check.corners = corners;
@@ -239,7 +239,7 @@ TEST_CASE("curves: where fronts merge, miters add no faults to those of round co
       CHECK(count_faults(Corners::Miter) <= round);
     }
   }
-  CHECK(mitred > 1000);
+  CHECK(mitered > 1000);
   CHECK(merged > 20);
 }
 

@@ -168,7 +168,7 @@ TEST_CASE("exact surface: miters are those of its faces", "[exact]") {
   OffsetOptions options = options_for(&cylinder, 0.3);
   options.corners = Corners::Miter;
   const OffsetResult result = offset(cylinder.mesh.view(), options);
-  CHECK(count(result.states, VertexState::Mitred) == 80);
+  CHECK(count(result.states, VertexState::Mitered) == 80);
   CHECK(most_off(cylinder, result.positions, 0.3) < 1e-10);
   options.distance = Distances(-0.3);
   options.corners = Corners::Round;

@@ -231,7 +231,7 @@ TEST_CASE("layer cells: a plane of triangles, by numbers", "[layer_cells]") {
   CHECK(field(volume.point_fields, "achieved").values[50] == 1.25F);
 }
 
-TEST_CASE("layer cells: seams of a cube are one, and mitred cells fill what is between", "[layer_cells]") {
+TEST_CASE("layer cells: seams of a cube are one, and mitered cells fill what is between", "[layer_cells]") {
   const Polygons mesh = seamed_cube(4);  // a power of 2, so that copies agree in all bits
   std::vector<Vec3d> directions = mesh.positions;
   for (Vec3d& d : directions)

@@ -137,12 +137,12 @@ TEST_CASE("layers: on a plane, heights and volumes are exact", "[layers]") {
 TEST_CASE("layers: corners are round unless miters are asked for", "[layers][miter]") {
   const Polygons cube = shapes::box(Vec3d(1), 3, false);
   const std::vector<Distances> heights = growing(0.02, 1.2, 3);
-  OffsetOptions round, mitred;
+  OffsetOptions round, mitered;
   round.corners = Corners::Round;
-  mitred.corners = Corners::Miter;
+  mitered.corners = Corners::Miter;
   const LayersResult as_grown = grow_layers(cube.view(), heights, {}),
                      of_round = grow_layers(cube.view(), heights, round),
-                     of_miters = grow_layers(cube.view(), heights, mitred);
+                     of_miters = grow_layers(cube.view(), heights, mitered);
   for (std::size_t k = 1; k <= heights.size(); ++k) {
     const std::vector<Vec3d> positions = as_grown.stacks.surface(k), on_planes = of_miters.stacks.surface(k);
     CHECK(positions == of_round.stacks.surface(k));

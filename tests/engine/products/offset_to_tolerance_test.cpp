@@ -84,7 +84,7 @@ SpreadPoints spread_points(const RefinedOffset& refined, int count, const std::v
   const auto& [positions, states, achieved, distances, turned, statistics, field, paths, errors, faults] =
       refined.result;
   const auto gets_there = [&, &all = states](std::uint32_t v) {
-    return all[v] == VertexState::Reached || all[v] == VertexState::Mitred;
+    return all[v] == VertexState::Reached || all[v] == VertexState::Mitered;
   };
   std::vector<double> area_up_to;
   std::vector<std::size_t> faces;
@@ -507,17 +507,17 @@ TEST_CASE("tolerance: check finds the miters of corners with more planes than me
     check.tolerance_share = 0.02;
     const CheckResult found = check_offset(refined.refinement.polygons.view(), refined.result.positions, check);
     CHECK(found.beyond == 0);
-    const auto mitred = [](const std::vector<VertexState>& states) {
-      return std::count(states.begin(), states.end(), VertexState::Mitred);
+    const auto mitered = [](const std::vector<VertexState>& states) {
+      return std::count(states.begin(), states.end(), VertexState::Mitered);
     };
-    CHECK(mitred(found.states) == mitred(refined.result.states));
+    CHECK(mitered(found.states) == mitered(refined.result.states));
     CHECK(found.certified.value().certified == Approx(certified_of(refined).certified).epsilon(1e-9));
   }
 }
 
 TEST_CASE("tolerance: a pair in single precision is what it says", "[tolerance][miter][check][long][no_races]") {
   // Rounding tilts the pieces of split faces. If it counted as an error, a tenth of the vertices would be short; if
-  // `check` took the pieces for planes of their own, hundreds of mitred corners would be beyond the distance, and with
+  // `check` took the pieces for planes of their own, hundreds of mitered corners would be beyond the distance, and with
   // a source that is only rounded when it is written, some faces inverted.
   const Rounding single(Precision::Kind::Single);
   for (unsigned seed = 1; seed <= 6; ++seed)
@@ -589,7 +589,7 @@ TEST_CASE("tolerance: added vertices keep to the miter limit where faces are fol
                                                       options_for(kDistance, Corners::Miter), tolerance_of(0.05));
     double farthest = 0;
     for (std::size_t v = 0; v < refined.result.states.size(); ++v)
-      if (refined.result.states[v] == VertexState::Mitred)
+      if (refined.result.states[v] == VertexState::Mitered)
         farthest = std::max(
             farthest, (refined.result.positions[v] - refined.refinement.polygons.positions[v]).length() / kDistance);
     CHECK(farthest > 1.5);

@@ -253,8 +253,8 @@ TEST_CASE("part: a hole's wall slides on the cone above it to where its moved fa
         options.corners = corners;
         const OffsetResult result = offset(plate.mesh.view(), options);
         // Edges that bend by less than 20 degrees are no creases, and stay as with round corners.
-        const bool mitred = distance > 0 || (corners == Corners::Miter && sides <= 16);
-        const double radius = 3 - distance * (mitred ? 1 / std::cos(std::numbers::pi / sides) : 1);
+        const bool mitered = distance > 0 || (corners == Corners::Miter && sides <= 16);
+        const double radius = 3 - distance * (mitered ? 1 / std::cos(std::numbers::pi / sides) : 1);
         double worst = 0;
         for (std::uint32_t v = 0; v < plate.mesh.positions.size(); ++v) {
           const std::uint32_t ring = v / sides;
@@ -263,7 +263,7 @@ TEST_CASE("part: a hole's wall slides on the cone above it to where its moved fa
           worst = std::max(worst, (result.positions[v] - expected).length());
         }
         CHECK(worst < 1e-8);
-        CHECK(test::share(result, VertexState::Reached) + test::share(result, VertexState::Mitred) == 1);
+        CHECK(test::share(result, VertexState::Reached) + test::share(result, VertexState::Mitered) == 1);
         CHECK(is_confirmed(plate.mesh, result, options));
       }
 }
@@ -286,7 +286,7 @@ TEST_CASE("part: a chamfer moves to where its planes meet the faces beside it, a
         const double rise = distance * (at_planes ? std::sqrt(1 + t * t) : std::sqrt((2 + t * t) / 2));
         CHECK((result.positions[4] - Vec3d(0, 0, 8 + rise)).length() < 1e-9);
         CHECK((result.positions[8] - Vec3d(2 - rise / t, 2 - rise / t, 8 + 2 * t)).length() < 1e-9);
-        CHECK(test::share(result, VertexState::Reached) + test::share(result, VertexState::Mitred) == 1);
+        CHECK(test::share(result, VertexState::Reached) + test::share(result, VertexState::Mitered) == 1);
         CHECK(is_confirmed(box, result, options));
 
         options.only = {0, 1, 1, 1, 1, 0, 0, 0, 0, 0};  // the sides, whose upper edge is the chamfer's lower one
@@ -318,10 +318,10 @@ TEST_CASE("part: its edge meets the faces that stay in a plane of symmetry, too"
   for (const Corners corners : {Corners::Round, Corners::Miter}) {
     options.corners = corners;
     const OffsetResult result = offset(halved.view(), options);
-    const bool mitred = corners == Corners::Miter;
-    const double wider = mitred ? 0.25 / std::cos(std::numbers::pi / 16) : 0.25;
-    // In the plane itself there is no edge that could be mitred.
-    for (std::uint32_t i = mitred ? 1 : 0; i <= (mitred ? 7 : 8); ++i)
+    const bool mitered = corners == Corners::Miter;
+    const double wider = mitered ? 0.25 / std::cos(std::numbers::pi / 16) : 0.25;
+    // In the plane itself there is no edge that could be mitered.
+    for (std::uint32_t i = mitered ? 1 : 0; i <= (mitered ? 7 : 8); ++i)
       CHECK((result.positions[2 * 16 + i] - whole.at(i, 3 + wider, 6 + wider)).length() < 1e-8);
     CHECK(is_confirmed(halved, result, options));
   }

@@ -66,7 +66,7 @@ void add_moved(Polygons& all, const Polygons& mesh, const Vec3d& by) {
 
 }  // namespace
 
-TEST_CASE("shell junctions: walls between rooms are as thick as asked for, and mitred where they meet", "[shell]") {
+TEST_CASE("shell junctions: walls between rooms are as thick as asked for, and mitered where they meet", "[shell]") {
   for (const double distance : {0.5, -0.5, 2.0}) {
     INFO(distance);
     const Polygons mesh = walls(four_rooms());
@@ -147,7 +147,7 @@ TEST_CASE("shell junctions: cubes that share an edge, or a corner, are hollowed 
   }
 }
 
-TEST_CASE("shell junctions: cubes that share an edge get one skin around both, mitred on either side", "[shell]") {
+TEST_CASE("shell junctions: cubes that share an edge get one skin around both, mitered on either side", "[shell]") {
   const double d = 0.25;
   for (const int divisions : {1, 2})
     for (const bool triangles : {false, true})

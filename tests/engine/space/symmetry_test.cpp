@@ -97,7 +97,7 @@ TEST_CASE("symmetry: borders in a plane stay in it to the last bit, whatever fac
       const OffsetResult result = offset(mesh.view(), options);
       for (std::size_t v = 0; v < mesh.positions.size(); ++v) CHECK(result.positions[v][2] == mesh.positions[v][2]);
       const bool is_farther = corners == Corners::Miter && distance > 0;
-      CHECK(test::share(result, is_farther ? VertexState::Mitred : VertexState::Reached) == 1);
+      CHECK(test::share(result, is_farther ? VertexState::Mitered : VertexState::Reached) == 1);
       CHECK(test::judge(mesh.view(), result, distance, 1, false).worst_reached <= 1e-6);
       CHECK(result.statistics.borders.planes.size() == 2);
       CHECK(result.statistics.borders.held_vertices == 8);

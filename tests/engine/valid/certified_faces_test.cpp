@@ -69,13 +69,13 @@ TEST_CASE("certified: shares are of the area of the faces that move", "[certifie
   for (const double side : {1.0, -1.0}) {
     CAPTURE(side);
     const FacesOverPlane::Corner there{side, side * kAsked}, off{1.3 * side, side * kAsked},
-        short_of{side, side * kAsked, VertexState::Limited}, mitred{side, side * kAsked, VertexState::Mitred},
+        short_of{side, side * kAsked, VertexState::Limited}, mitered{side, side * kAsked, VertexState::Mitered},
         stays{0, 0}, other_side{-side, -side * kAsked};
     FacesOverPlane faces;
     faces.add(1, 1, {there, there, there});
     faces.add(2, 2, {off, off, off});
     faces.add(4, 4, {there, short_of, there});
-    faces.add(8, 8, {there, mitred, there});
+    faces.add(8, 8, {there, mitered, there});
     faces.add(16, 16, {stays, stays, stays});  // of no area, as it does not move
     const CertifiedFaces result = faces.certified(0.05);
     CHECK(result.there == Approx(11 / 15.0).epsilon(1e-12));

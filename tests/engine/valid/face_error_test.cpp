@@ -10,7 +10,7 @@ using namespace vdb_offset;
 
 namespace {
 
-OffsetResult mitred(const Polygons& mesh, double distance) {
+OffsetResult mitered(const Polygons& mesh, double distance) {
   OffsetOptions options;
   options.distance = distance;
   options.corners = Corners::Miter;
@@ -30,7 +30,7 @@ Polygons crooked_pyramid() {
 
 TEST_CASE("face error: what miters put farther away is told apart", "[faces]") {
   // Each face of the cube reaches 0.2 beyond the edges of the face that it comes from.
-  const OffsetResult result = mitred(shapes::box(Vec3d(2, 2, 2), 1, false), 0.2);
+  const OffsetResult result = mitered(shapes::box(Vec3d(2, 2, 2), 1, false), 0.2);
   const FaceError& faces = result.statistics.faces;
   CHECK(faces.mean < 1e-9);
   CHECK(faces.at_distance == 1);
@@ -48,7 +48,7 @@ TEST_CASE("face error: what miters put farther away is told apart", "[faces]") {
 TEST_CASE("face error: planes that no point is on are too far away", "[faces]") {
   const Polygons mesh = crooked_pyramid();
   for (const double distance : {0.1, -0.1}) {
-    const OffsetResult result = mitred(mesh, distance);
+    const OffsetResult result = mitered(mesh, distance);
     CAPTURE(distance);
     // By the planes of the four faces: how far the tip is beyond each, and the share of their area that is affected.
     double farthest = 0;

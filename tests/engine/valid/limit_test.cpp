@@ -115,7 +115,7 @@ Polygons cubes_at_an_edge() {
   return mesh;
 }
 
-/// Of a mesh's area, a third of each triangle to each of its corners: what has reached its distance, or is mitred.
+/// Of a mesh's area, a third of each triangle to each of its corners: what has reached its distance, or is mitered.
 double reached_area(const Polygons& mesh, const OffsetResult& result) {
   const Surface surface = build_surface(mesh.view(), {});
   double all = 0, reached = 0;
@@ -125,7 +125,7 @@ double reached_area(const Polygons& mesh, const OffsetResult& result) {
     all += 3 * third;
     for (const auto v : corners)
       if (const VertexState state = result.states[surface.representative[v]];
-          state == VertexState::Reached || state == VertexState::Mitred)
+          state == VertexState::Reached || state == VertexState::Mitered)
         reached += third;
   }
   return reached / all;
@@ -528,12 +528,12 @@ TEST_CASE("limit: a vertex that gives up its miter has a path to the distance, a
   MiterFacts facts;
   const std::vector<Miter> miters = MiterFinder<ClosestQuery>(query, Corners::Miter, 4, nullptr)(distances, facts);
   REQUIRE(miters.size() == 8);
-  MitredPaths mitred(miters, paths);
+  MitredPaths mitered(miters, paths);
   ConstrainedSurface constrained{query, surface, {}, {}, {}};
-  constrained.farther = mitred.farther();
+  constrained.farther = mitered.farther();
   FaultFinder faults(constrained, source, distances, Rounding(Precision{}));
   faults.move_to_ends(paths);
-  const SurfaceOffset offset{constrained, source, distances, paths, &mitred};
+  const SurfaceOffset offset{constrained, source, distances, paths, &mitered};
   LimitState state(faults, offset, nullptr);
   const Indices corner{0};
   // At a share of a miter nothing tells that it is beyond: only the end's distance is known.
@@ -567,7 +567,7 @@ TEST_CASE("limit: vertices that gave up their miters are at their distance, or n
     CHECK(check_offset(scene.mesh.view(), result.positions, check).faults.total() == 0);
     std::size_t beyond = 0;
     for (std::size_t v = 0; v < result.states.size(); ++v) {
-      const bool may_be = result.states[v] == VertexState::Mitred || result.states[v] == VertexState::Cut;
+      const bool may_be = result.states[v] == VertexState::Mitered || result.states[v] == VertexState::Cut;
       beyond += !may_be && result.achieved[v] > std::abs(scene.distance) * (1 + 1.01e-6);
     }
     CHECK(beyond == 0);

@@ -16,7 +16,7 @@ std::size_t short_vertices(const OffsetResult& result) {
   return count;
 }
 
-/// With round corners, as other results are no start for mitred ones.
+/// With round corners, as other results are no start for mitered ones.
 OffsetOptions round_corners() {
   OffsetOptions options;
   options.corners = Corners::Round;

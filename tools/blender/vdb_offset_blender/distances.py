@@ -91,7 +91,7 @@ def told(result):
     count = result.statistics["vertices_by_state"]
     parts = [f"{len(result.states)} vertices: {100 * result.reached:.4g} % at their distance"]
     said = {"collision": "stopped by the other side", "limited": "held back to stay valid", "outside_field": "beyond the grid",
-            "cut": "mitred and cut"}
+            "cut": "mitered and cut"}
     parts += [f"{count[state]} {words}" for state, words in said.items() if count.get(state)]
     error = (result.statistics.get("faces") or {}).get("mean_error")
     if error is not None:

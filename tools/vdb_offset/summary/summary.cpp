@@ -138,11 +138,11 @@ std::string vertices_in_words(const OffsetResult& result, const AchievedSummary&
 
 void add_miters(const OffsetStatistics& statistics, Remarks& remarks) {
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
-  if (in(VertexState::Mitred) + in(VertexState::Cut) > 0)
+  if (in(VertexState::Mitered) + in(VertexState::Cut) > 0)
     remarks.add(Gravity::Detail,
                 fmt::format("{} vertices on sharp edges are farther than the distance (miters), {} of them cut at "
                             "--miter-limit",
-                            in(VertexState::Mitred) + in(VertexState::Cut), in(VertexState::Cut)));
+                            in(VertexState::Mitered) + in(VertexState::Cut), in(VertexState::Cut)));
 }
 
 /// Nothing where every vertex of the offset belongs to an edge.
@@ -234,7 +234,7 @@ void add_layers_corners(const Job& job, const MiterFacts& miters, Remarks& remar
     remarks.add(Gravity::Off, fmt::format("layers are thinner at {} sharp corners: {} miters are cut at --miter-limit, "
                                           "{} have no room",
                                           miters.cut + round, miters.cut, round));
-  remarks.add(Gravity::Detail, fmt::format("{} sharp corners have miters", miters.mitred));
+  remarks.add(Gravity::Detail, fmt::format("{} sharp corners have miters", miters.mitered));
 }
 
 /// The distance as it stands in a verdict.

@@ -63,7 +63,7 @@ std::vector<Miter> edge_miters_of(const MeshParts& parts, const BorderSlides& sl
     const bool is_farther = closest.distance > target * (1 + kReachedTolerance);
     if (!is_farther && !slides.lead(w)) return;  // its path in the plane gets there, as those beside it do
     found[i] = {w, displacement,     closest.distance,
-                0, closest.triangle, is_farther ? VertexState::Mitred : VertexState::Reached,
+                0, closest.triangle, is_farther ? VertexState::Mitered : VertexState::Reached,
                 0};
   };
   for_each_index(border.size(), find, 16);

@@ -18,7 +18,7 @@ namespace vdb_offset {
 std::vector<MiterWalls> walls_at_edge(const MeshParts& parts, Border border);
 
 /// The ends of border vertices where the moved faces meet those that stay (see BorderSlides::meet()), as miters:
-/// mitred, if they are farther from the part than their distance. Of the whole's vertices, sorted by vertex. Distances
+/// mitered, if they are farther from the part than their distance. Of the whole's vertices, sorted by vertex. Distances
 /// are those of the moving part's; vertices whose faces have different ones of their own have none. The result does not
 /// depend on the number of threads.
 std::vector<Miter> edge_miters_of(const MeshParts& parts, const BorderSlides& slides, const ClosestQuery& moving_part,

@@ -347,7 +347,7 @@ std::pair<std::vector<Miter>, std::vector<std::uint8_t>> MiterFinder<Query>::pro
     const double distance = asked.distances[units[i].vertex];
     const auto [end, is_cut] = end_of(units[i], distance);
     const Vec3d displacement = distance == 0 ? Vec3d(0.0) : round_displacement(end * distance, std::abs(distance));
-    miters[i] = {units[i].vertex, displacement, 0, 0, 0, is_cut ? VertexState::Cut : VertexState::Mitred,
+    miters[i] = {units[i].vertex, displacement, 0, 0, 0, is_cut ? VertexState::Cut : VertexState::Mitered,
                  units[i].excess};
   }
   bring_to_exact(units, asked, miters);

@@ -29,7 +29,7 @@ struct Miter {
   double distance;        ///< Exact unsigned distance to the surface there; to the exact one, where that is known.
   double nearer;          ///< That to the triangles, if they are nearer than the exact surface is; else 0.
   std::uint32_t closest;  ///< The triangle of the surface that is closest there.
-  VertexState state;      ///< Reached, where the end is at the distance as well; Mitred; or Cut.
+  VertexState state;      ///< Reached, where the end is at the distance as well; Mitered; or Cut.
   double excess;          ///< By how much more than its distance a plane is moved, as a share of the distance.
   /// What is closest there is neither of the vertex's corner nor goes on in its planes: of miters that get into each
   /// other's way those do not stay.
@@ -146,10 +146,10 @@ class MitredPaths {
 
   bool empty() const { return others_.empty(); }
   /// Of each vertex of the paths: the distance of its end from the surface if that is farther than was asked, as it is
-  /// mitred; 0 of the others. Empty if no vertex is mitred.
+  /// mitered; 0 of the others. Empty if no vertex is mitered.
   std::span<const double> farther() const { return farther_; }
   /// Of each vertex of the paths: the distance of its end from the triangles, if that is less than was asked, and less
-  /// than it is from the exact surface; 0 of the others. Empty if no vertex is mitred.
+  /// than it is from the exact surface; 0 of the others. Empty if no vertex is mitered.
   std::span<const double> nearer() const { return nearer_; }
   /// Whether a vertex's path leads to the end of its miter now.
   bool is_mitred(std::uint32_t vertex) const;
@@ -160,7 +160,7 @@ class MitredPaths {
   bool is_miter(std::uint32_t vertex, const Vec3d& displacement) const;
   /// The vertices whose miters have been taken back.
   Indices taken_back() const;
-  /// Gives those of some vertices that are mitred the paths back that they had before, and returns them.
+  /// Gives those of some vertices that are mitered the paths back that they had before, and returns them.
   Indices take_back(const Indices& vertices, Paths& paths) { return exchange(vertices, paths, true); }
   /// Gives those of some vertices whose miters have been taken back these again, and returns them.
   Indices miter_again(const Indices& vertices, Paths& paths) { return exchange(vertices, paths, false); }
@@ -168,7 +168,7 @@ class MitredPaths {
   void forget(const Indices& vertices);
 
  private:
-  /// The other path of a vertex: that before it was mitred, or where that has been given back, the miter.
+  /// The other path of a vertex: that before it was mitered, or where that has been given back, the miter.
   struct Other {
     std::uint32_t vertex;
     Vec3d displacement;
@@ -178,11 +178,11 @@ class MitredPaths {
     std::vector<Vec3d> trace;
     double farther, nearer;  // of the miter, always
     Vec3d miter;             // its displacement
-    bool is_mitred = true;
+    bool is_mitered = true;
   };
 
   std::vector<Other>::const_iterator find(std::uint32_t vertex) const;
-  Indices exchange(const Indices& vertices, Paths& paths, bool are_mitred);
+  Indices exchange(const Indices& vertices, Paths& paths, bool are_mitered);
 
   std::vector<Other> others_;  // sorted by vertex
   std::vector<double> farther_, nearer_;

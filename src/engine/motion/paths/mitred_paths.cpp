@@ -16,10 +16,10 @@ const Miter* find_miter(std::span<const Miter> miters, std::uint32_t vertex) {
 void count_miters(std::span<const Miter> miters, std::span<const VertexState> states, MiterFacts& facts) {
   for (const Miter& miter : miters) {
     const VertexState state = states[miter.vertex];
-    facts.mitred += state == VertexState::Mitred;
+    facts.mitered += state == VertexState::Mitered;
     facts.cut += state == VertexState::Cut;
     facts.taken_back += state != miter.state;
-    if (state == VertexState::Mitred) facts.excess = std::max(facts.excess, miter.excess);
+    if (state == VertexState::Mitered) facts.excess = std::max(facts.excess, miter.excess);
   }
 }
 
@@ -52,7 +52,7 @@ std::vector<MitredPaths::Other>::const_iterator MitredPaths::find(std::uint32_t 
 
 bool MitredPaths::is_mitred(std::uint32_t vertex) const {
   const auto at = find(vertex);
-  return at != others_.end() && at->is_mitred;
+  return at != others_.end() && at->is_mitered;
 }
 
 const Vec3d* MitredPaths::miter_of(std::uint32_t vertex) const {
@@ -68,30 +68,30 @@ bool MitredPaths::is_miter(std::uint32_t vertex, const Vec3d& displacement) cons
 Indices MitredPaths::taken_back() const {
   Indices vertices;
   for (const Other& other : others_)
-    if (!other.is_mitred) vertices.push_back(other.vertex);
+    if (!other.is_mitered) vertices.push_back(other.vertex);
   return vertices;
 }
 
 void MitredPaths::forget(const Indices& vertices) {
   std::erase_if(others_, [&](const Other& other) {
-    return !other.is_mitred && std::binary_search(vertices.begin(), vertices.end(), other.vertex);
+    return !other.is_mitered && std::binary_search(vertices.begin(), vertices.end(), other.vertex);
   });
 }
 
-Indices MitredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mitred) {
+Indices MitredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mitered) {
   Indices exchanged;
   for (const auto v : vertices) {
     const auto at = find(v);
-    if (at == others_.end() || at->is_mitred != are_mitred) continue;
+    if (at == others_.end() || at->is_mitered != are_mitered) continue;
     Other& other = others_[static_cast<std::size_t>(at - others_.begin())];
     std::swap(paths.displacement[v], other.displacement);
     std::swap(paths.achieved[v], other.achieved);
     std::swap(paths.state[v], other.state);
     std::swap(paths.closest[v], other.closest);
     if (!paths.trace.empty()) std::swap(paths.trace[v], other.trace);
-    other.is_mitred = !are_mitred;
-    farther_[v] = are_mitred ? 0 : other.farther;
-    nearer_[v] = are_mitred ? 0 : other.nearer;
+    other.is_mitered = !are_mitered;
+    farther_[v] = are_mitered ? 0 : other.farther;
+    nearer_[v] = are_mitered ? 0 : other.nearer;
     exchanged.push_back(v);
   }
   return exchanged;

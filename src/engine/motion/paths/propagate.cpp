@@ -351,7 +351,7 @@ std::vector<Paths> march_all(const Query& query, const DirectionField& direction
 
 const char* name(VertexState state) {
   constexpr const char* kNames[kVertexStateCount] = {"reached", "collision", "limited", "outside_field",
-                                                     "unused",  "mitred",    "cut"};
+                                                     "unused",  "mitered",   "cut"};
   return kNames[static_cast<std::size_t>(state)];
 }
 

@@ -2,7 +2,7 @@
 // Measures given positions as an offset of plane curves, wherever they come from. The source is joined in its plane, in
 // which all positions have to lie. If no distance is given, it is the median of those found, on the side that most
 // vertices of the line lie on. Faults are found by the class that limit_curves() works with. A point is reached at its
-// exact distance, mitred or cut at the end of its miter, and limited elsewhere; points that are too far away, on the
+// exact distance, mitered or cut at the end of its miter, and limited elsewhere; points that are too far away, on the
 // wrong side, or apart although they are one in the source are counted. Segments are measured between their ends. Where
 // all distances are 0, all points count as reached. No point is moved here.
 #include "vdb_offset/curve_offset.h"
@@ -142,13 +142,13 @@ class CurveChecker {
                    tolerance = kReachedTolerance * target + epsilon * positions_[v].length();
       result_.achieved[p] = distance;
       const Miter* const miter = curves.miter_of(v);
-      const bool is_mitred =
+      const bool is_mitered =
           miter &&
           (positions_[v] - curves.source[v] - Vec2d(miter->displacement[0], miter->displacement[1])).length() <=
               tolerance;
-      if (is_mitred) result_.states[p] = miter->state;
+      if (is_mitered) result_.states[p] = miter->state;
       else if (std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
-      result_.beyond += error > tolerance && !is_mitred;
+      result_.beyond += error > tolerance && !is_mitered;
       result_.wrong_side += faults.on_wrong_side(v);
     }
   }

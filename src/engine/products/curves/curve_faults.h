@@ -21,7 +21,7 @@ struct PlaneCurves {
   std::span<const Vec2d> source;  ///< Positions of the polyline's vertices in the plane.
   const Distances& distances;     ///< Of the polyline's vertices.
   Rounding precision;             ///< Of the coordinates that will be written.
-  std::span<const Miter> miters;  ///< Of vertices at corners, sorted by vertex; empty if corners are not mitred.
+  std::span<const Miter> miters;  ///< Of vertices at corners, sorted by vertex; empty if corners are not mitered.
 
   /// The miter of a vertex; nullptr if it has none.
   const Miter* miter_of(std::uint32_t vertex) const { return find_miter(miters, vertex); }

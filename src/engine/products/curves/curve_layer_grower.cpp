@@ -93,7 +93,7 @@ LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> he
   source.reserve(curves.source.size());
   for (const Vec2d& p : curves.source) source.emplace_back(p[0], p[1], z);
   AskedLayers asked(source, curves.line().origin, heights);
-  asked.stretch_mitred(paths);
+  asked.stretch_mitered(paths);
   RailStacks stacks(asked, paths);
   CurveWall wall(curves, faults, stacks);
   LayerStack stack = grow_on(wall, paths, progress);

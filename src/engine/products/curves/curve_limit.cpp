@@ -107,16 +107,16 @@ class CurveLimiter {
   }
 
   /// Whether a point stands at the end of its miter.
-  bool is_mitred(std::uint32_t p) const {
+  bool is_mitered(std::uint32_t p) const {
     const Miter* const miter = curves_.miter_of(p);
     return miter && share_[p] == 1 && displacement_[p] == Vec2d(miter->displacement[0], miter->displacement[1]);
   }
 
   /// Gives a point at the end of its miter the path that it had before: at a share of a miter that is longer than the
-  /// distance it would be beyond that, and not mitred. Returns false if it is at the end of none.
+  /// distance it would be beyond that, and not mitered. Returns false if it is at the end of none.
   bool give_up_miter(std::uint32_t p) {
     const Vec3d& path = paths_.displacement[p];
-    if (!is_mitred(p) || displacement_[p] == Vec2d(path[0], path[1])) return false;
+    if (!is_mitered(p) || displacement_[p] == Vec2d(path[0], path[1])) return false;
     displacement_[p] = {path[0], path[1]};
     return true;
   }
@@ -293,7 +293,7 @@ class CurveLimiter {
       paths_.achieved[p] = faults_.distance_of(p);
       if (target == 0) continue;
       const double error = std::abs(paths_.achieved[p] - target);
-      if (is_mitred(p)) paths_.state[p] = curves_.miter_of(p)->state;
+      if (is_mitered(p)) paths_.state[p] = curves_.miter_of(p)->state;
       else if (error <= kReachedTolerance * target + faults_.rounding(p)) paths_.state[p] = VertexState::Reached;
       else if (pulled || paths_.state[p] == VertexState::Reached) paths_.state[p] = VertexState::Limited;
       statistics_.limited_vertices += paths_.state[p] == VertexState::Limited;

@@ -23,7 +23,7 @@ namespace vdb_offset {
 /// turn, as far as it gets no fault. A curve that is pulled back altogether is the source, so that this ends. Pulled
 /// points are `Limited`, with the distance that they keep.
 ///
-/// Where corners are mitred, points go to the ends of their miters before that, unless there is a fault there.
+/// Where corners are mitered, points go to the ends of their miters before that, unless there is a fault there.
 ///
 /// `paths` are those of the polyline's vertices; displacements stay in the plane. The result does not depend on the
 /// number of threads.

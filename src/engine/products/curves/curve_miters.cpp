@@ -22,19 +22,19 @@ void move_to_path_ends(const PlaneCurves& curves, const Paths& paths, const Indi
 
 void miter_sound_corners(const PlaneCurves& curves, Paths& paths) {
   if (curves.miters.empty()) return;
-  MitredPaths mitred(curves.miters, paths);
+  MitredPaths mitered(curves.miters, paths);
   CurveFaults faults(curves);
   Indices all(curves.source.size());
   std::iota(all.begin(), all.end(), 0u);
   move_to_path_ends(curves, paths, all, faults);
-  for (Indices back = mitred.take_back(faults.faulty_points(), paths); !back.empty();
-       back = mitred.take_back(faults.faulty_points(), paths))
+  for (Indices back = mitered.take_back(faults.faulty_points(), paths); !back.empty();
+       back = mitered.take_back(faults.faulty_points(), paths))
     move_to_path_ends(curves, paths, back, faults);
   // Those whose faults are not theirs, one by one.
-  for (const auto p : mitred.taken_back()) {
+  for (const auto p : mitered.taken_back()) {
     const std::size_t before = faults.total();
-    move_to_path_ends(curves, paths, mitred.miter_again({p}, paths), faults);
-    if (faults.total() > before) move_to_path_ends(curves, paths, mitred.take_back({p}, paths), faults);
+    move_to_path_ends(curves, paths, mitered.miter_again({p}, paths), faults);
+    if (faults.total() > before) move_to_path_ends(curves, paths, mitered.take_back({p}, paths), faults);
   }
 }
 

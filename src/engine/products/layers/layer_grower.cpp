@@ -212,7 +212,7 @@ double LayerGrower::share_at_end(std::uint32_t v, Vec3d& bend) const {
   if (!wall_.moves(v) || !(paths_.achieved[v] > 0)) return 0;
   const Vec3d& whole = paths_.displacement[v];
   const Vec3d start = wall_.direction_of(v) * (stacks_.asked().side * whole.length());
-  const bool may_bend = !wall_.is_bound(v) && !stacks_.asked().is_mitred(v);
+  const bool may_bend = !wall_.is_bound(v) && !stacks_.asked().is_mitered(v);
   if (may_bend && wall_.sees_all_faces(v, start)) bend = start - whole;
   else if (!wall_.sees_all_faces(v, whole)) return 0;
   if (!falls_short(paths_.state[v])) return 1;

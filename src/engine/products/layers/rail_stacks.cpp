@@ -12,9 +12,9 @@ AskedLayers::AskedLayers(std::span<const Vec3d> positions, const Vec3d& origin, 
   }));
 }
 
-void AskedLayers::stretch_mitred(const Paths& paths) {
+void AskedLayers::stretch_mitered(const Paths& paths) {
   for (std::uint32_t v = 0; v < paths.state.size(); ++v) {
-    if (paths.state[v] != VertexState::Mitred && paths.state[v] != VertexState::Cut) continue;
+    if (paths.state[v] != VertexState::Mitered && paths.state[v] != VertexState::Cut) continue;
     stretch.resize(source.size(), 1.0);
     stretch[v] = paths.achieved[v] / std::abs(heights.back()[v]);
   }

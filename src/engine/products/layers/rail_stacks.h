@@ -21,8 +21,8 @@ namespace vdb_offset {
 struct AskedLayers {
   /// \pre there is a set of heights, and each has one for each vertex
   AskedLayers(std::span<const Vec3d> positions, const Vec3d& origin, std::span<const Distances> of_layers);
-  /// Finds how much farther than the heights mitred vertices go. \param paths of the vertices, to the outermost layer
-  void stretch_mitred(const Paths& paths);
+  /// Finds how much farther than the heights mitered vertices go. \param paths of the vertices, to the outermost layer
+  void stretch_mitered(const Paths& paths);
 
   std::span<const Vec3d> source;  ///< Positions of the vertices on the wall.
   Vec3d front_origin;             ///< `source` less this is in the frame of the queries that rails are put down by.
@@ -30,14 +30,14 @@ struct AskedLayers {
   int side;                            ///< 1 outward, -1 inward.
 
   /// Of each vertex: how many times as far as a height the vertex is from the wall where its faces have that height; 1
-  /// but for mitred ones, whose layers stand on the straight line to the end of the miter. Empty if none is mitred.
+  /// but for mitered ones, whose layers stand on the straight line to the end of the miter. Empty if none is mitered.
   std::vector<double> stretch;
 
   /// How far a layer of a vertex is to be from the wall.
   double distance(std::size_t layer, std::uint32_t v) const { return stretched(std::abs(heights[layer][v]), v); }
   /// How far the outermost layer of a vertex is to be from the wall.
   double thickness(std::uint32_t v) const { return distance(heights.size() - 1, v); }
-  bool is_mitred(std::uint32_t v) const { return !stretch.empty() && stretch[v] != 1; }
+  bool is_mitered(std::uint32_t v) const { return !stretch.empty() && stretch[v] != 1; }
 
  private:
   double stretched(double height, std::uint32_t v) const { return stretch.empty() ? height : height * stretch[v]; }

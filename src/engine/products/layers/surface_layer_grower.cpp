@@ -125,7 +125,7 @@ class SurfaceWall final : public LayerWall {
     std::vector<double> distances;
     for (const auto v : vertices) {
       stacks_.flatten(v);
-      const bool slides = slides_ && constrained_.is_bound(v) && !asked_.is_mitred(v);
+      const bool slides = slides_ && constrained_.is_bound(v) && !asked_.is_mitered(v);
       if (!(stacks_.share(v) > 0) || (slides && put_along_border(v))) continue;
       const double top = stacks_.top_of(v), radius = put_on_fan(v, top, fan, distances);
       if (radius < kInfinity) by_fan.add(v, top, {source_[v] - moving_part_.origin, radius});
@@ -264,7 +264,7 @@ LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlide
   Progress progress(callback, Stage::Layers, kExpectedRounds, Units::Unknown);
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
   AskedLayers asked(source, constrained.moving_part.surface().origin, heights);
-  asked.stretch_mitred(paths);
+  asked.stretch_mitered(paths);
   RailStacks stacks(asked, paths);
   SurfaceWall wall(constrained, slides, columns, faults, paths, stacks);
   return grow_on(wall, paths, progress);

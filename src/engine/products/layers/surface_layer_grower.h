@@ -22,7 +22,7 @@ struct LayerStack {
   VertexStacks stacks;
   std::vector<double> share;           ///< Of each vertex: the share of its heights that it keeps, 0 .. 1.
   std::vector<double> first_achieved;  ///< Exact distance of the first layer's vertices, world units.
-  std::vector<double> stretch;         ///< See AskedLayers; empty if no vertex is mitred.
+  std::vector<double> stretch;         ///< See AskedLayers; empty if no vertex is mitered.
   LayerStatistics statistics;
 
   /// The height that the faces beside a vertex have, where the vertex is at a distance.

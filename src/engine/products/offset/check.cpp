@@ -269,7 +269,7 @@ void judge_vertices(const MeshParts& parts, std::span<const Vec3d> source, const
                                  is_on_planes(parts, w, displacement, distances[w], options, tolerance,
                                               find_miter(miters.of_vertex, w));
     result.states[v] = is_at_miter                    ? miter->state
-                       : is_beside_miter              ? VertexState::Mitred
+                       : is_beside_miter              ? VertexState::Mitered
                        : std::abs(error) <= tolerance ? VertexState::Reached
                                                       : VertexState::Limited;
     if (is_at_miter && miter->nearer > 0) result.achieved[v] = miter->distance;

@@ -50,13 +50,13 @@ ExactFacts measure_exactness(const PreparedMesh& mesh, const PreparedMesh::March
   Measured along, near;
   for (std::uint32_t v = 0; v < result.states.size(); ++v) {
     if (result.distances[v] == 0 ||
-        (result.states[v] != VertexState::Reached && result.states[v] != VertexState::Mitred))
+        (result.states[v] != VertexState::Reached && result.states[v] != VertexState::Mitered))
       continue;
     const std::uint32_t w = mesh.surface().welded[v];
     Measured* to = &along;
     // Not from the faces that stay: those beside the part go on from where they are.
     const bool is_at_rim = !mesh.parts().at_border.empty() && mesh.parts().at_border[w];
-    if (is_at_rim || !marched.mitred.is_miter(w, marched.paths.displacement[w])) {
+    if (is_at_rim || !marched.mitered.is_miter(w, marched.paths.displacement[w])) {
       const std::uint32_t t = marched.paths.closest[w];
       const Vec3d point = result.positions[v] - part.origin;
       const TrianglePoint foot = part.closest_on(t, point);

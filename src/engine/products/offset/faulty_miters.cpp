@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes miters back that come with faults. Those that give way are set aside first. Of each fault's mitred corners, the
-// ones with the least area around them go back to their paths, until no fault has a mitred corner. Near a remaining
-// fault, which does not come of miters, those are given up for good that are at the distance without. Since miters may
-// have been in each other's way alone, the others are tried again in rounds, a third of them at a time, and few are
-// tried one by one; whichever comes to be at a fault goes back. Those set aside are tried last. Which ones go together
-// follows from a hash of their numbers, and not from threads. Faults that come of no miter are left to limit().
+// Takes miters back that come with faults. Those that give way are set aside first. Of each fault's mitered corners,
+// the ones with the least area around them go back to their paths, until no fault has a mitered corner. Near a
+// remaining fault, which does not come of miters, those are given up for good that are at the distance without. Since
+// miters may have been in each other's way alone, the others are tried again in rounds, a third of them at a time, and
+// few are tried one by one; whichever comes to be at a fault goes back. Those set aside are tried last. Which ones go
+// together follows from a hash of their numbers, and not from threads. Faults that come of no miter are left to
+// limit().
 #include "products/offset/faulty_miters.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@
 namespace vdb_offset {
 namespace {
 
-// Of a fault's mitred corners, the one with the least area around it loses its miter, and those with up to this many
+// Of a fault's mitered corners, the one with the least area around it loses its miter, and those with up to this many
 // times its area: a narrow slot then costs its own miters, and not those at the far corners of the plate around it. Not
 // measured.
 constexpr double kAlike = 4;
@@ -38,7 +39,7 @@ constexpr double kAround = 2;
 class MiterJudge {
  public:
   MiterJudge(FaultFinder& faults, const Surface& surface, Corners corners, PreparedMesh::Marched& marched)
-      : faults_(faults), surface_(surface), mitred_(marched.mitred), paths_(marched.paths) {
+      : faults_(faults), surface_(surface), mitered_(marched.mitered), paths_(marched.paths) {
     for (const Miter& miter : marched.miters) {
       if (miter.gives_way) giving_way_.push_back(miter.vertex);
       if (corners == Corners::Miter && miter.state != VertexState::Reached) farther_.push_back(miter.vertex);
@@ -52,24 +53,24 @@ class MiterJudge {
     if (faulty.empty()) return;
     const Indices within = vertices_within(length, faulty);
     std::set_difference(within.begin(), within.end(), farther_.begin(), farther_.end(), std::back_inserter(given_up_));
-    faults_.move_to_ends(paths_, mitred_.take_back(given_up_, paths_));
+    faults_.move_to_ends(paths_, mitered_.take_back(given_up_, paths_));
     take_faulty_back();
   }
 
   void take_faulty_back() {
     for (Indices back = faulty_miters(); !back.empty(); back = faulty_miters())
-      faults_.move_to_ends(paths_, mitred_.take_back(back, paths_));
+      faults_.move_to_ends(paths_, mitered_.take_back(back, paths_));
   }
 
   /// Takes back those that give way, for others to have room first.
-  void set_aside() { faults_.move_to_ends(paths_, mitred_.take_back(giving_way_, paths_)); }
+  void set_aside() { faults_.move_to_ends(paths_, mitered_.take_back(giving_way_, paths_)); }
 
   void try_those_set_aside() {
     Indices some;
     std::set_difference(giving_way_.begin(), giving_way_.end(), given_up_.begin(), given_up_.end(),
                         std::back_inserter(some));
     try_again(some);
-    mitred_.forget(giving_way_);  // those that have come back: they would take the room of others later
+    mitered_.forget(giving_way_);  // those that have come back: they would take the room of others later
   }
 
   void try_all_again() {
@@ -120,16 +121,16 @@ class MiterJudge {
 
   bool gives_way(std::uint32_t v) const { return std::binary_search(giving_way_.begin(), giving_way_.end(), v); }
 
-  /// The mitred vertices that a fault comes of: misplaced ones, and of each other fault those with the least area.
+  /// The mitered vertices that a fault comes of: misplaced ones, and of each other fault those with the least area.
   Indices faulty_miters() const {
     Indices vertices;
     for (const auto v : faults_.misplaced())
-      if (mitred_.is_mitred(v)) vertices.push_back(v);
+      if (mitered_.is_mitred(v)) vertices.push_back(v);
     faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
       std::vector<std::pair<double, std::uint32_t>> corners;
       for (const auto triangle : {s, t})
         for (const auto v : surface_.triangles[triangle])
-          if (mitred_.is_mitred(v)) corners.emplace_back(area_around(v), v);
+          if (mitered_.is_mitred(v)) corners.emplace_back(area_around(v), v);
       if (corners.empty()) return;
       const double least = std::min_element(corners.begin(), corners.end())->first;
       for (const auto& [area, v] : corners)
@@ -138,7 +139,7 @@ class MiterJudge {
     // What the rim of a shell meets is told by its corners alone.
     faults_.for_each_faulty_corner(
         [&](std::uint32_t v) {
-          if (mitred_.is_mitred(v)) vertices.push_back(v);
+          if (mitered_.is_mitred(v)) vertices.push_back(v);
         },
         [](std::uint32_t) { return true; });
     sort_unique(vertices);
@@ -146,7 +147,7 @@ class MiterJudge {
   }
 
   Indices to_try_again() const {
-    const Indices taken_back = mitred_.taken_back();
+    const Indices taken_back = mitered_.taken_back();
     Indices some;
     std::set_difference(taken_back.begin(), taken_back.end(), given_up_.begin(), given_up_.end(),
                         std::back_inserter(some));
@@ -156,24 +157,24 @@ class MiterJudge {
 
   /// Miters vertices again, and takes those back that come to be at faults.
   void try_again(const Indices& vertices) {
-    const Indices tried = mitred_.miter_again(vertices, paths_);
+    const Indices tried = mitered_.miter_again(vertices, paths_);
     if (tried.empty()) return;
     FaultFinder::Trial trial = faults_.try_ends(paths_, tried);
     for (Indices back = tried; !back.empty();) {
       const Indices faulty = faults_.faulty_vertices();
       back.clear();
       std::set_intersection(tried.begin(), tried.end(), faulty.begin(), faulty.end(), std::back_inserter(back));
-      back = mitred_.take_back(back, paths_);
+      back = mitered_.take_back(back, paths_);
       trial.take_back(back);
     }
   }
 
   FaultFinder& faults_;
   const Surface& surface_;
-  MitredPaths& mitred_;
+  MitredPaths& mitered_;
   Paths& paths_;
-  Indices given_up_;    // vertices that are not to be mitred again; sorted
-  Indices giving_way_;  // mitred vertices that do; sorted
+  Indices given_up_;    // vertices that are not to be mitered again; sorted
+  Indices giving_way_;  // mitered vertices that do; sorted
   Indices farther_;     // vertices whose miters end farther away than the distance; sorted
 };
 
@@ -181,7 +182,7 @@ class MiterJudge {
 
 void take_faulty_miters_back(FaultFinder& faults, const Surface& surface, Corners corners, double distance,
                              PreparedMesh::Marched& marched) {
-  if (marched.mitred.empty()) return;
+  if (marched.mitered.empty()) return;
   MiterJudge judge(faults, surface, corners, marched);
   judge.set_aside();
   judge.take_faulty_back();

@@ -168,7 +168,8 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
     faults->move_to_ends(paths);
     take_faulty_miters_back(*faults, mesh.surface(), mesh.corners(), outer.scale(), marched);
     marched_distances = paths.achieved;
-    statistics.limit = untangle(*faults, {constrained, mesh.source(), outer, paths, &marched.mitred}, options.progress);
+    statistics.limit =
+        untangle(*faults, {constrained, mesh.source(), outer, paths, &marched.mitered}, options.progress);
   }
   std::optional<GrowthColumns> columns;
   LayerStack stack;

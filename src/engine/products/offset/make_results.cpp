@@ -153,7 +153,7 @@ class ResultMaker {
 
   /// Finds the faults of a draft, if it has to be valid, or if miters may have made some: no collision mode has those.
   void look_for_faults(Draft& draft, const ProgressCallback& callback) const {
-    if (!has_to_be_valid() && draft.marched.mitred.empty()) return;
+    if (!has_to_be_valid() && draft.marched.mitered.empty()) return;
     Progress progress(callback, Stage::Limit, 5 * 3);  // three steps of the first fifth
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.faults.emplace(draft.constrained, mesh_.source(), draft.distances, options_.precision, source_crossings_);
@@ -170,7 +170,7 @@ class ResultMaker {
   /// Whether any vertex is farther than its distance, for its faces to be there.
   static bool goes_farther(const Draft& draft) {
     constexpr double kRounding = 1e-6;  // of the distance, as of what has reached it
-    const std::span<const double> farther = draft.marched.mitred.farther();
+    const std::span<const double> farther = draft.marched.mitered.farther();
     for (std::size_t v = 0; v < farther.size(); ++v)
       if (farther[v] > (1 + kRounding) * std::abs(draft.distances[v])) return true;
     return false;
@@ -190,7 +190,7 @@ class ResultMaker {
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.statistics.limit = limit(*draft.faults,
                                    {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths,
-                                    &draft.marched.mitred, goes_farther(draft) && draft.distances.at_corner().empty()},
+                                    &draft.marched.mitered, goes_farther(draft) && draft.distances.at_corner().empty()},
                                    progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     if (options_.keep_face_errors) draft.face_faults = draft.faults->of_faces(mesh_.mesh().face_count());

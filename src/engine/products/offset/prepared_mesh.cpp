@@ -204,7 +204,7 @@ void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> 
     if (has_edge_miters_)
       found = with_edge_miters(parts_, *slides_, std::move(found),
                                edge_miters_of(parts_, *slides_, *query_, on_part[i], own_distances), walls);
-    each.mitred = MitredPaths(found, each.paths);
+    each.mitered = MitredPaths(found, each.paths);
     if (!may_go_farther) continue;
     each.miters = std::move(found);
     each.miter_facts = facts;
@@ -243,7 +243,7 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
     marched.paths.state[w] = std::abs(off) <= most ? VertexState::Reached
                              : falls_short(state)  ? state
                                                    : VertexState::Limited;
-    if (off > 0 && (state == VertexState::Mitred || state == VertexState::Cut))
+    if (off > 0 && (state == VertexState::Mitered || state == VertexState::Cut))
       marched.miters.push_back(
           {w, marched.paths.displacement[w], closest[i].distance, 0, closest[i].triangle, state, 0});
   }
@@ -252,11 +252,11 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
   hold(distances, marched);
   marched.miter_facts.on_creases = marched.miters.size();
   marched.vertex_error = targets.vertex_error;
-  marched.mitred = MitredPaths(marched.miters, marched.paths);
+  marched.mitered = MitredPaths(marched.miters, marched.paths);
   return marched;
 }
 
-/// Gives mitred vertices the paths that they have where they give their miters up: back towards what is closest, to
+/// Gives mitered vertices the paths that they have where they give their miters up: back towards what is closest, to
 /// their distance.
 void PreparedMesh::bring_to_distance(const Distances& distances, Marched& marched) const {
   for (const Miter& miter : marched.miters) {
@@ -303,8 +303,8 @@ ConstrainedSurface PreparedMesh::constrained(const Marched& marched, bool off_so
   VDB_OFFSET_ASSERT(marched.bound.empty() || marched.bound.size() == surface().vertices.size());
   ConstrainedSurface constrained = parts_.constrained(*query_, obstacles(), off_source, resting_faces);
   constrained.bound = marched.bound;
-  constrained.farther = marched.mitred.farther();
-  constrained.nearer = marched.mitred.nearer();
+  constrained.farther = marched.mitered.farther();
+  constrained.nearer = marched.mitered.nearer();
   constrained.on_crease = on_crease_;
   constrained.vertex_error = marched.vertex_error;
   return constrained;

@@ -184,7 +184,7 @@ Json certified_json(const CertifiedFaces& certified, const MeshFacts& facts) {
 }
 
 Json miters_json(const MiterFacts& miters) {
-  return {{"on_creases", miters.on_creases}, {"mitred", miters.mitred},         {"cut", miters.cut},
+  return {{"on_creases", miters.on_creases}, {"mitered", miters.mitered},       {"cut", miters.cut},
           {"unproven", miters.unproven},     {"taken_back", miters.taken_back}, {"worst_excess", miters.excess}};
 }
 

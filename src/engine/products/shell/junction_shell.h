@@ -22,7 +22,7 @@ struct JunctionInput {
 };
 
 /// Makes a shell in which each wedge at a junction has a vertex of its own, where the skins of the sheets around it
-/// meet: at the intersection of their planes ("mitred"), no farther than four thicknesses away. Skins make room for
+/// meet: at the intersection of their planes ("mitered"), no farther than four thicknesses away. Skins make room for
 /// that: within six thicknesses of junctions, and all over flat sheets that end there, vertices lie on their faces'
 /// planes at the thickness as well, and are moved along these. Faces, but for those of the rim, are those of `sheets`.
 /// Of the facts, only those of the rim and the junctions are counted.

@@ -11,7 +11,7 @@ namespace vdb_offset {
 /// The corners of wedges at a mesh's vertices (see sheet_sides.h) if sheets are as thick as they should be.
 struct WedgePositions {
   std::vector<std::uint8_t> is_near;  ///< Of each wedge: 1 at a junction or near one. The others have no position here.
-  std::vector<Vec3d> position;        ///< Of each wedge: mitred, with room made for junctions.
+  std::vector<Vec3d> position;        ///< Of each wedge: mitered, with room made for junctions.
   std::vector<double> weight;         ///< Of each wedge: of that position against the offset's, 1 at junctions.
 };
 

@@ -210,7 +210,7 @@ VertexTarget InterpolatedTargets::beside(const SurfacePlace& place, const Vec3d&
 /// has gone past where fronts meet, and is at the distance from the other side.
 bool InterpolatedTargets::is_first_on_the_way(const SurfacePlace& place, const Vec3d& origin, double asked,
                                               const VertexTarget& target) const {
-  if (!target.is_there || target.is_mitred) return true;
+  if (!target.is_there || target.is_mitered) return true;
   const double near = std::abs(asked) * (1 + kReachedTolerance);
   const std::vector<std::uint32_t> triangles = triangles_at(place);
   if (std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
@@ -343,10 +343,10 @@ bool InterpolatedTargets::is_free(const Ray& ray, double length, double distance
   return obstacles_->query(ray(length), 0).distance >= obstacles_->clearance;
 }
 
-VertexTarget InterpolatedTargets::end_of(const Ray& ray, double length, const Closest& closest, bool is_mitred) const {
+VertexTarget InterpolatedTargets::end_of(const Ray& ray, double length, const Closest& closest, bool is_mitered) const {
   Vec3d away = ray(length) - closest.point;
   away.normalize();
-  return {ray.direction * length, away, true, is_mitred};
+  return {ray.direction * length, away, true, is_mitered};
 }
 
 }  // namespace vdb_offset

@@ -21,7 +21,7 @@ struct VertexTarget {
   Vec3d displacement{0.0};  ///< World units.
   Vec3d away{0.0};          ///< Of unit length: from the closest point of the surface to the end.
   bool is_there = false;    ///< It gets to its distance, or to that from its own plane with Corners::Miter.
-  bool is_mitred = false;   ///< The latter, and is farther from the surface.
+  bool is_mitered = false;  ///< The latter, and is farther from the surface.
 };
 
 /// Finds where vertices go that were added on a surface: between two vertices of the offset to the nearest point at the
@@ -30,7 +30,7 @@ struct VertexTarget {
 /// from the source to the offset (Wang, Guibault, Camarero, Tchon, AIAA 2005), on round corners and in valleys alike:
 /// what is between two vertices in the source is between them in the offset.
 ///
-/// Where the surface's vertices are mitred, what lies in the plane of one face goes to that plane, moved by the
+/// Where the surface's vertices are mitered, what lies in the plane of one face goes to that plane, moved by the
 /// distance, if nothing else is nearer there.
 ///
 /// What is added on a border that stays in a plane stays in it, too.
@@ -45,7 +45,7 @@ class InterpolatedTargets {
   /// In the direction of the displacements there. \param position world coordinates; \param asked not 0
   VertexTarget along(const SurfacePlace& place, const Vec3d& position, double asked) const;
   /// From between two vertices of the offset, world coordinates, to the point nearest to that which is at the distance;
-  /// beside one that is mitred, to the planes of the faces at the place, moved by the distance, if nothing else is
+  /// beside one that is mitered, to the planes of the faces at the place, moved by the distance, if nothing else is
   /// nearer there.
   VertexTarget beside(const SurfacePlace& place, const Vec3d& position, double asked, const Vec3d& between,
                       bool is_by_miter) const;
@@ -68,7 +68,7 @@ class InterpolatedTargets {
   std::uint32_t hint_at(const SurfacePlace& place) const;
   VertexTarget at_distance(const Ray& ray) const;
   bool is_free(const Ray& ray, double length, double distance) const;
-  VertexTarget end_of(const Ray& ray, double length, const Closest& closest, bool is_mitred) const;
+  VertexTarget end_of(const Ray& ray, double length, const Closest& closest, bool is_mitered) const;
 
   const MeshParts& parts_;
   const ClosestQuery& query_;

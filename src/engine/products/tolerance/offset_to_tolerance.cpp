@@ -132,7 +132,7 @@ class RefinedRun {
       vertices[w].target.displacement = coarse.positions[v] - mesh_.positions[v];
       vertices[w].target.is_there = asked[w] != 0 && is_there(coarse.states[v]);
       vertices[w].otherwise = coarse.states[v];
-      vertices[w].target.is_mitred = coarse.states[v] == VertexState::Mitred;
+      vertices[w].target.is_mitered = coarse.states[v] == VertexState::Mitered;
     }
     return vertices;
   }

@@ -41,9 +41,9 @@ void RefinedMesh::prepare(const std::vector<RefinedVertex>& vertices) {
     const std::uint32_t v = numbers_.of_vertex[i];
     if (v == kNone) continue;
     targets.displacement[v] = vertices[i].target.displacement;
-    targets.state[v] = !vertices[i].target.is_there   ? vertices[i].otherwise
-                       : vertices[i].target.is_mitred ? VertexState::Mitred
-                                                      : VertexState::Reached;
+    targets.state[v] = !vertices[i].target.is_there    ? vertices[i].otherwise
+                       : vertices[i].target.is_mitered ? VertexState::Mitered
+                                                       : VertexState::Reached;
   }
   if (!each.empty()) options_.distance = Distances(std::move(each));
   space_.emplace(refinement_.polygons.view(), options_.metric);

@@ -264,7 +264,7 @@ Refiner::Candidate Refiner::candidate(const Edge& edge, std::uint32_t source) co
       edge, {triangles_.middle(edge, source), options_.precision(middle), (a.asked + b.asked) / 2, {}, false}, {}};
   if (a.target.is_there && b.target.is_there) {
     one.question.between = middle + (a.target.displacement + b.target.displacement) / 2.0;
-    one.question.is_by_miter = a.target.is_mitred || b.target.is_mitred;
+    one.question.is_by_miter = a.target.is_mitered || b.target.is_mitered;
   }
   one.vertex.asked = one.question.asked;
   one.vertex.tolerance = (a.tolerance + b.tolerance) / 2;
@@ -286,7 +286,7 @@ const Refiner::Candidate* Refiner::find(const Edge& edge) const {
 }
 
 /// Chooses edges of a triangle whose vertices all get there. Where no edge bulges and all are short, splits gain
-/// nothing: so it is where a mitred crease ends at a round corner.
+/// nothing: so it is where a mitered crease ends at a round corner.
 template <class Split>
 void Refiner::mark_off(const std::array<const Candidate*, 3>& of_edge, Split&& split) const {
   // What an edge that stays bulges by, no split of another one mends.

@@ -41,6 +41,6 @@ OffsetTriangle offset_triangle(const CertifiedMesh& mesh, const OffsetFace& face
 CertifiedFaces certify(const CertifiedMesh& mesh, Progress* progress = nullptr);
 
 /// Whether a vertex gets to its distance, or to that from its own planes.
-constexpr bool is_there(VertexState state) { return state == VertexState::Reached || state == VertexState::Mitred; }
+constexpr bool is_there(VertexState state) { return state == VertexState::Reached || state == VertexState::Mitered; }
 
 }  // namespace vdb_offset
