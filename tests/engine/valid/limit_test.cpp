@@ -528,7 +528,7 @@ TEST_CASE("limit: a vertex that gives up its miter has a path to the distance, a
   MiterFacts facts;
   const std::vector<Miter> miters = MiterFinder<ClosestQuery>(query, Corners::Miter, 4, nullptr)(distances, facts);
   REQUIRE(miters.size() == 8);
-  MitredPaths mitered(miters, paths);
+  MiteredPaths mitered(miters, paths);
   ConstrainedSurface constrained{query, surface, {}, {}, {}};
   constrained.farther = mitered.farther();
   FaultFinder faults(constrained, source, distances, Rounding(Precision{}));

@@ -138,11 +138,11 @@ extern template class MiterFinder<CurveQuery>;
 void count_miters(std::span<const Miter> miters, std::span<const VertexState> states, MiterFacts& facts);
 
 /// Vertices whose paths lead to the ends of their miters, and can be given back the paths that they had before.
-class MitredPaths {
+class MiteredPaths {
  public:
-  MitredPaths() = default;
+  MiteredPaths() = default;
   /// Gives vertices their miters for paths: straight ones. \pre the miters are sorted by vertex, which paths have
-  MitredPaths(std::span<const Miter> miters, Paths& paths);
+  MiteredPaths(std::span<const Miter> miters, Paths& paths);
 
   bool empty() const { return others_.empty(); }
   /// Of each vertex of the paths: the distance of its end from the surface if that is farther than was asked, as it is
@@ -152,7 +152,7 @@ class MitredPaths {
   /// than it is from the exact surface; 0 of the others. Empty if no vertex is mitered.
   std::span<const double> nearer() const { return nearer_; }
   /// Whether a vertex's path leads to the end of its miter now.
-  bool is_mitred(std::uint32_t vertex) const;
+  bool is_mitered(std::uint32_t vertex) const;
   /// The displacement of a vertex to the end of its miter, whether or not its path leads there now; nullptr without
   /// one.
   const Vec3d* miter_of(std::uint32_t vertex) const;

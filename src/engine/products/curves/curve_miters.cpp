@@ -22,7 +22,7 @@ void move_to_path_ends(const PlaneCurves& curves, const Paths& paths, const Indi
 
 void miter_sound_corners(const PlaneCurves& curves, Paths& paths) {
   if (curves.miters.empty()) return;
-  MitredPaths mitered(curves.miters, paths);
+  MiteredPaths mitered(curves.miters, paths);
   CurveFaults faults(curves);
   Indices all(curves.source.size());
   std::iota(all.begin(), all.end(), 0u);

@@ -125,12 +125,12 @@ class MiterJudge {
   Indices faulty_miters() const {
     Indices vertices;
     for (const auto v : faults_.misplaced())
-      if (mitered_.is_mitred(v)) vertices.push_back(v);
+      if (mitered_.is_mitered(v)) vertices.push_back(v);
     faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
       std::vector<std::pair<double, std::uint32_t>> corners;
       for (const auto triangle : {s, t})
         for (const auto v : surface_.triangles[triangle])
-          if (mitered_.is_mitred(v)) corners.emplace_back(area_around(v), v);
+          if (mitered_.is_mitered(v)) corners.emplace_back(area_around(v), v);
       if (corners.empty()) return;
       const double least = std::min_element(corners.begin(), corners.end())->first;
       for (const auto& [area, v] : corners)
@@ -139,7 +139,7 @@ class MiterJudge {
     // What the rim of a shell meets is told by its corners alone.
     faults_.for_each_faulty_corner(
         [&](std::uint32_t v) {
-          if (mitered_.is_mitred(v)) vertices.push_back(v);
+          if (mitered_.is_mitered(v)) vertices.push_back(v);
         },
         [](std::uint32_t) { return true; });
     sort_unique(vertices);
@@ -171,7 +171,7 @@ class MiterJudge {
 
   FaultFinder& faults_;
   const Surface& surface_;
-  MitredPaths& mitered_;
+  MiteredPaths& mitered_;
   Paths& paths_;
   Indices given_up_;    // vertices that are not to be mitered again; sorted
   Indices giving_way_;  // mitered vertices that do; sorted

@@ -204,7 +204,7 @@ void PreparedMesh::miter(std::span<const Distances> on_part, std::span<Marched> 
     if (has_edge_miters_)
       found = with_edge_miters(parts_, *slides_, std::move(found),
                                edge_miters_of(parts_, *slides_, *query_, on_part[i], own_distances), walls);
-    each.mitered = MitredPaths(found, each.paths);
+    each.mitered = MiteredPaths(found, each.paths);
     if (!may_go_farther) continue;
     each.miters = std::move(found);
     each.miter_facts = facts;
@@ -252,7 +252,7 @@ PreparedMesh::Marched PreparedMesh::marched_to(const Distances& distances, const
   hold(distances, marched);
   marched.miter_facts.on_creases = marched.miters.size();
   marched.vertex_error = targets.vertex_error;
-  marched.mitered = MitredPaths(marched.miters, marched.paths);
+  marched.mitered = MiteredPaths(marched.miters, marched.paths);
   return marched;
 }
 

@@ -78,7 +78,7 @@ class PreparedMesh {
     Paths paths;
     std::vector<std::uint8_t> bound;  ///< Of each vertex; empty if none must.
     std::vector<Miter> miters;        ///< With Corners::Miter, those that are proven.
-    MitredPaths mitered;              ///< The vertices whose paths are miters, with Corners::Round as well.
+    MiteredPaths mitered;             ///< The vertices whose paths are miters, with Corners::Round as well.
     MiterFacts miter_facts;           ///< What is known of them before the result is made valid.
     double vertex_error = 0;          ///< See ConstrainedSurface.
   };

@@ -198,7 +198,7 @@ class FaceMeter {
   }
 
   /// Whether a corner of a triangle is not where the triangle's own plane is at the distance: at a sharp corner that is
-  /// not mitred, or a miter with which the plane goes too far, as more planes meet there than one point can be on. By
+  /// not mitered, or a miter with which the plane goes too far, as more planes meet there than one point can be on. By
   /// less than area may be off that counts as at the distance, no corner makes a mean worth telling.
   bool is_off_plane(std::uint32_t t, std::uint32_t v) const {
     const double asked = faces_.own ? faces_.own->at(t, v) : faces_.distances[v],

@@ -18,8 +18,8 @@ struct SurfaceOffset {
   std::span<const Vec3d> source;  ///< Positions of the constrained surface's vertices in the input, world coordinates.
   const Distances& distances;     ///< Of these vertices.
   Paths& paths;                   ///< Of these vertices; displacement 0 of those that are not on the moving part.
-  MitredPaths* mitred = nullptr;  ///< Of these vertices, if any are mitred.
-  bool keeps_faces = false;       ///< Faces are to be at the distance: no vertex slides where that loses more of them.
+  MiteredPaths* mitered = nullptr;  ///< Of these vertices, if any are mitered.
+  bool keeps_faces = false;  ///< Faces are to be at the distance: no vertex slides where that loses more of them.
 };
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew (see fault_finder.h
@@ -29,7 +29,7 @@ struct SurfaceOffset {
 /// 1. Untangling (PatchUntangler): patches of vertices around faults slide at their distance until they have no fault.
 ///    That costs no distance. Collided vertices slide to where they have their distance in the same way.
 /// 2. Pulling back (pull_back()): displacements of vertices of faulty faces are shortened, little by little, until
-///    there is no fault, beginning with those of vertices with which little live area is lost; mitred vertices get the
+///    there is no fault, beginning with those of vertices with which little live area is lost; mitered vertices get the
 ///    paths back first that they had before. A surface that is pulled back
 ///    altogether is the source, so that this ends.
 /// 3. Letting out (LetOut): pulled vertices are let out again as far as no fault arises, a few at a time.

@@ -26,7 +26,7 @@ LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, c
       source(offset.source),
       distances(offset.distances),
       paths(offset.paths),
-      mitred(offset.mitred),
+      mitered(offset.mitered),
       keeps_faces(offset.keeps_faces),
       faults(fault_finder),
       started_from(warm),
@@ -73,10 +73,10 @@ double LimitState::off_planes(std::uint32_t v, const Vec3d& displacement) const 
 }
 
 Indices LimitState::take_miters_back(const Indices& vertices) {
-  if (!mitred) return {};
-  Indices unmitred = mitred->take_back(vertices, paths);
-  for (const auto v : unmitred) whole[v] = paths.displacement[v];
-  return unmitred;
+  if (!mitered) return {};
+  Indices unmitered = mitered->take_back(vertices, paths);
+  for (const auto v : unmitered) whole[v] = paths.displacement[v];
+  return unmitered;
 }
 
 Displacements LimitState::displacements() const {
@@ -103,7 +103,7 @@ Indices LimitState::with_rings(const Indices& vertices, int rings) {
 }
 
 bool LimitState::may_slide(std::uint32_t v) const {
-  if (keeps_faces && mitred && mitred->is_mitred(v)) return false;
+  if (keeps_faces && mitered && mitered->is_mitered(v)) return false;
   const VertexState state = paths.state[v];
   const bool at_end = !falls_short(state) || (state == VertexState::Collision && has_sides(v));
   return at_end && distances[v] != 0 && constrained.vertex_on_part(v) && !constrained.is_bound(v);

@@ -31,9 +31,9 @@ struct LimitState {
   const Surface& surface;
   std::span<const Vec3d> source;
   const Distances& distances;
-  Paths& paths;         ///< Keeps states and displacements of the beginning; the result is written by limit().
-  MitredPaths* mitred;  ///< Null if no vertex is mitred.
-  bool keeps_faces;     ///< See SurfaceOffset.
+  Paths& paths;           ///< Keeps states and displacements of the beginning; the result is written by limit().
+  MiteredPaths* mitered;  ///< Null if no vertex is mitered.
+  bool keeps_faces;       ///< See SurfaceOffset.
   FaultFinder& faults;
   const WarmStart* started_from;  ///< Null without one.
 
@@ -57,7 +57,7 @@ struct LimitState {
            (nearer > 0 ? nearer : std::abs(distances[v])) * (1 - kReachedTolerance) - faults.rounding(v);
   }
   /// Whether a vertex may slide at its distance. A collided one may slide to where there is room; a vertex that stays,
-  /// or is bound to its path, may not, nor one that is mitred where faces are to be kept.
+  /// or is bound to its path, may not, nor one that is mitered where faces are to be kept.
   bool may_slide(std::uint32_t v) const;
 
   /// Whether a vertex may be put elsewhere than on its path; not one that an obstacle may have stopped.
@@ -85,7 +85,7 @@ struct LimitState {
   /// World coordinates.
   Vec3d position_of(std::uint32_t v) const { return source[v] + displacement_of(v); }
 
-  /// Gives those of some vertices that are mitred the whole displacements that they would have with round corners, and
+  /// Gives those of some vertices that are mitered the whole displacements that they would have with round corners, and
   /// returns them: a share of a miter may end farther off than the distance, where nothing but its end may be.
   Indices take_miters_back(const Indices& vertices);
 

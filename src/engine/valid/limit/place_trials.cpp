@@ -45,7 +45,7 @@ void PlaceTrials::try_some(const std::vector<Candidate*>& some) {
       },
       16);
   OldOnes moved;
-  Indices put, mitred;
+  Indices put, mitered;
   for (std::size_t i = 0; i < some.size(); ++i) {
     if (!is_better[i]) continue;
     const std::uint32_t v = some[i]->vertex;
@@ -53,11 +53,11 @@ void PlaceTrials::try_some(const std::vector<Candidate*>& some) {
     put.push_back(v);
     state_.whole[v] = some[i]->places[some[i]->tried - 1].end;
     state_.share[v] = 1;
-    if (state_.mitred && state_.mitred->is_miter(v, state_.whole[v])) mitred.push_back(v);
+    if (state_.mitered && state_.mitered->is_miter(v, state_.whole[v])) mitered.push_back(v);
   }
   if (put.empty()) return;
   // Before they are judged: any other vertex that is farther than its distance is misplaced.
-  if (state_.mitred) state_.mitred->miter_again(mitred, state_.paths);
+  if (state_.mitered) state_.mitered->miter_again(mitered, state_.paths);
   // All crossings, as not all corners of a fault go back: one that is not known would be left.
   FaultFinder::Trial trial = state_.faults.try_out(put, [&](std::uint32_t v) { return state_.position_of(v); });
   for (Indices back = restore_faulty(moved); !back.empty(); back = restore_faulty(moved)) {
@@ -99,7 +99,7 @@ Indices PlaceTrials::restore_faulty(OldOnes& moved) {
     state_.whole[v] = old.whole;
     state_.share[v] = old.share;
   }
-  if (state_.mitred) state_.mitred->take_back(back, state_.paths);
+  if (state_.mitered) state_.mitered->take_back(back, state_.paths);
   std::erase_if(moved, [&](const Old& old) { return std::binary_search(back.begin(), back.end(), old.vertex); });
   return back;
 }

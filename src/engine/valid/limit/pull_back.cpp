@@ -53,9 +53,9 @@ bool pull_back(LimitState& state) {
   const Indices vertices = vertices_to_pull(state);
   if (vertices.empty()) return false;
   const Indices unmovable = state.faults.unmovable_folds();
-  const Indices unmitred = state.take_miters_back(vertices);
+  const Indices unmitered = state.take_miters_back(vertices);
   for (const auto v : vertices) {
-    if (std::binary_search(unmitred.begin(), unmitred.end(), v)) continue;
+    if (std::binary_search(unmitered.begin(), unmitered.end(), v)) continue;
     state.share[v] *= kKept;
     if (state.share[v] < kLastShare) state.share[v] = 0;
     state.pulled.push_back(v);

@@ -34,7 +34,7 @@ constexpr std::size_t kPlacesSettled = 3, kMostFaceTrials = 1000;
 }  // namespace
 
 bool ReturnToFaces::may_move(std::uint32_t v) const {
-  return state_.may_leave_path(v) && !(state_.mitred && state_.mitred->is_mitred(v));
+  return state_.may_leave_path(v) && !(state_.mitered && state_.mitered->is_mitered(v));
 }
 
 bool ReturnToFaces::operator()(Which which) {
@@ -116,7 +116,7 @@ std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v, Which w
   const auto offer = [&](const Vec3d& end) {
     if (const double off = state_.off_planes(v, end); off < worst) places.push_back({end, off});
   };
-  if (const Vec3d* const miter = state_.mitred ? state_.mitred->miter_of(v) : nullptr) offer(*miter);
+  if (const Vec3d* const miter = state_.mitered ? state_.mitered->miter_of(v) : nullptr) offer(*miter);
   if (!falls_short(state_.paths.state[v])) {
     if (state_.keeps_faces) offer(state_.paths.displacement[v]);
     else places.push_back({state_.paths.displacement[v], kBest});  // comes first, and others may follow from there

@@ -81,7 +81,7 @@ SettlingTrial::Old SettlingTrial::old_of(std::uint32_t v) const {
           state_.whole[v],
           state_.share[v],
           state_.is_short(v),
-          state_.mitred && state_.mitred->is_mitred(v),
+          state_.mitered && state_.mitered->is_mitered(v),
           aim_ == Aim::Faces ? state_.off_planes(v) : 0};
 }
 
@@ -139,17 +139,17 @@ bool SettlingTrial::try_out(const Moves& moves, const SlideAside* aside) {
 }
 
 void SettlingTrial::put(const Moves& moves) {
-  Indices moved, mitred;
+  Indices moved, mitered;
   for (const auto& [v, displacement] : moves) {
     moved.push_back(v);
     state_.whole[v] = round_displacement(displacement, std::abs(state_.distances[v]));
     state_.share[v] = 1;
-    if (state_.mitred && state_.mitred->is_miter(v, state_.whole[v])) mitred.push_back(v);
+    if (state_.mitered && state_.mitered->is_miter(v, state_.whole[v])) mitered.push_back(v);
   }
   sort_unique(moved);
-  if (state_.mitred) {
-    state_.mitred->take_back(moved, state_.paths);
-    state_.mitred->miter_again(mitred, state_.paths);
+  if (state_.mitered) {
+    state_.mitered->take_back(moved, state_.paths);
+    state_.mitered->miter_again(mitered, state_.paths);
   }
   state_.live_area.measure(moved);
   state_.move(moved);
@@ -158,9 +158,9 @@ void SettlingTrial::put(const Moves& moves) {
 void SettlingTrial::pull(const Indices& vertices, OldOnes& old) {
   for (const auto v : vertices)
     if (!holds(old, v)) old.push_back(old_of(v));
-  const Indices unmitred = state_.take_miters_back(vertices);
+  const Indices unmitered = state_.take_miters_back(vertices);
   for (const auto v : vertices) {
-    if (std::binary_search(unmitred.begin(), unmitred.end(), v)) continue;
+    if (std::binary_search(unmitered.begin(), unmitered.end(), v)) continue;
     double& share = state_.share[v];
     share = share < kLastShareInTrial ? 0 : share * kKeptInTrial;
   }
@@ -217,18 +217,18 @@ bool SettlingTrial::find_room(std::uint32_t v) {
 }
 
 void SettlingTrial::put_back(const OldOnes& old) {
-  Indices vertices, mitred;
+  Indices vertices, mitered;
   for (const Old& o : old) {
     state_.whole[o.vertex] = o.whole;
     state_.share[o.vertex] = o.share;
     vertices.push_back(o.vertex);
-    if (o.was_mitred) mitred.push_back(o.vertex);
+    if (o.was_mitered) mitered.push_back(o.vertex);
   }
   sort_unique(vertices);
-  sort_unique(mitred);
-  if (state_.mitred) {
-    state_.mitred->take_back(vertices, state_.paths);
-    state_.mitred->miter_again(mitred, state_.paths);
+  sort_unique(mitered);
+  if (state_.mitered) {
+    state_.mitered->take_back(vertices, state_.paths);
+    state_.mitered->miter_again(mitered, state_.paths);
   }
   state_.move(vertices);
 }

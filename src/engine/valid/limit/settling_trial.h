@@ -48,7 +48,7 @@ class SettlingTrial {
     std::uint32_t vertex;
     Vec3d whole;
     double share;
-    bool was_short, was_mitred;
+    bool was_short, was_mitered;
     double was_off;  // with Aim::Faces
   };
   using OldOnes = std::vector<Old>;

@@ -23,7 +23,7 @@ void count_miters(std::span<const Miter> miters, std::span<const VertexState> st
   }
 }
 
-MitredPaths::MitredPaths(std::span<const Miter> miters, Paths& paths) {
+MiteredPaths::MiteredPaths(std::span<const Miter> miters, Paths& paths) {
   if (miters.empty()) return;
   farther_.assign(paths.displacement.size(), 0.0);
   nearer_ = farther_;
@@ -44,41 +44,41 @@ MitredPaths::MitredPaths(std::span<const Miter> miters, Paths& paths) {
   exchange(all, paths, false);
 }
 
-std::vector<MitredPaths::Other>::const_iterator MitredPaths::find(std::uint32_t vertex) const {
+std::vector<MiteredPaths::Other>::const_iterator MiteredPaths::find(std::uint32_t vertex) const {
   const auto at = std::lower_bound(others_.begin(), others_.end(), vertex,
                                    [](const Other& other, std::uint32_t v) { return other.vertex < v; });
   return at != others_.end() && at->vertex == vertex ? at : others_.end();
 }
 
-bool MitredPaths::is_mitred(std::uint32_t vertex) const {
+bool MiteredPaths::is_mitered(std::uint32_t vertex) const {
   const auto at = find(vertex);
   return at != others_.end() && at->is_mitered;
 }
 
-const Vec3d* MitredPaths::miter_of(std::uint32_t vertex) const {
+const Vec3d* MiteredPaths::miter_of(std::uint32_t vertex) const {
   const auto at = find(vertex);
   return at != others_.end() ? &at->miter : nullptr;
 }
 
-bool MitredPaths::is_miter(std::uint32_t vertex, const Vec3d& displacement) const {
+bool MiteredPaths::is_miter(std::uint32_t vertex, const Vec3d& displacement) const {
   const auto at = find(vertex);
   return at != others_.end() && at->miter == displacement;
 }
 
-Indices MitredPaths::taken_back() const {
+Indices MiteredPaths::taken_back() const {
   Indices vertices;
   for (const Other& other : others_)
     if (!other.is_mitered) vertices.push_back(other.vertex);
   return vertices;
 }
 
-void MitredPaths::forget(const Indices& vertices) {
+void MiteredPaths::forget(const Indices& vertices) {
   std::erase_if(others_, [&](const Other& other) {
     return !other.is_mitered && std::binary_search(vertices.begin(), vertices.end(), other.vertex);
   });
 }
 
-Indices MitredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mitered) {
+Indices MiteredPaths::exchange(const Indices& vertices, Paths& paths, bool are_mitered) {
   Indices exchanged;
   for (const auto v : vertices) {
     const auto at = find(v);
