@@ -111,7 +111,7 @@ constexpr double kMostRatio = 1000;
 
 void require_alone(const py::list& distances, const Source& source, const AskedOptions& asked) {
   if (distances.size() != 1)
-    throw InvalidOption("distance_z: expected one distance beside it, got " + std::to_string(distances.size()));
+    throw InvalidOption("distance_z: expected a single distance with it, got " + std::to_string(distances.size()));
   if (!asked.vdb.empty()) throw InvalidOption("distance_z and save_vdb exclude each other");
   if (asked.obstacles) throw InvalidOption("distance_z and obstacles exclude each other");
   if (source.curves() && asked.options.precision.kind != Precision::Kind::Double)
@@ -134,8 +134,7 @@ std::optional<ByAxis> by_axis(const py::dict& keywords, const py::list& distance
   const py::object across = distances[0];
   GivenDistance xy = length_by_axis(across, "distance"), z = length_by_axis(along, "distance_z");
   if (xy.value == 0 && z.value == 0)
-    throw InvalidOption("distance_z: expected one other than 0, as the distance beside it is, got " +
-                        Keywords::text_of(along));
+    throw InvalidOption("distance_z: expected one other than 0, as the distance is, got " + Keywords::text_of(along));
   const auto least_beside = [](GivenDistance other) {
     other.value /= kMostRatio;
     return other;
@@ -145,9 +144,9 @@ std::optional<ByAxis> by_axis(const py::dict& keywords, const py::list& distance
   const double diagonal = xy.percent || z.percent ? used_diagonal(source.view()) : 0,
                length = xy.in_world_units(diagonal), ratio = length / z.in_world_units(diagonal);
   if (!(ratio > 0) || !(std::max(ratio, 1 / ratio) <= kMostRatio * (1 + 1e-9)))
-    throw InvalidOption("distance_z: expected one of the sign of the distance beside it, and within " +
+    throw InvalidOption("distance_z: expected the sign of the distance, and a size within " +
                         std::to_string(static_cast<int>(kMostRatio)) + " times it, either way, got " +
-                        Keywords::text_of(along) + " beside " + Keywords::text_of(across));
+                        Keywords::text_of(along) + " with " + Keywords::text_of(across));
   const auto text = [](const py::object& given) { return py::str(given).cast<std::string>(); };
   return ByAxis{Metric::of_half_axes(length, z.in_world_units(diagonal)), length,
                 text(across) + " xy " + text(along) + " z"};

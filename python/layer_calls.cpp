@@ -49,7 +49,7 @@ Grown grow_on_curves(CurvesView curves, std::span<const Distances> heights, cons
   return grown;
 }
 
-/// What a mesh has, beside curves: names of its faces, and rules for cells.
+/// What a mesh has and curves do not: names of its faces, and rules for cells.
 struct Walls {
   WallNames names;
   CellRules rules = CellRules::AnySolver;

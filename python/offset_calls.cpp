@@ -137,7 +137,7 @@ py::dict check_arrays(Input input, const py::object& vertices, const py::object&
       if (!tolerance.is_none()) throw InvalidOption("distance_z and tolerance exclude each other");
     }
   } else if (keywords.contains("distance_z")) {
-    throw InvalidOption("distance_z: expected a distance beside it, got none");
+    throw InvalidOption("distance_z: needs a distance as well");
   }
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(options);

@@ -64,7 +64,7 @@ std::string text_of(const py::object& distance) {
 void require_field(const AskedOptions& asked, std::span<const Distances> distances) {
   const auto is_none = [](const Distances& each) { return each.scale() == 0; };
   if (!asked.vdb.empty() && std::all_of(distances.begin(), distances.end(), is_none))
-    throw InvalidOption("save_vdb: expected a distance other than 0, for which there is a field");
+    throw InvalidOption("save_vdb: expected a distance other than 0, which needs a field");
 }
 
 void save_field(const AskedOptions& asked, const OffsetResult& result, const std::string& distance) {

@@ -35,7 +35,7 @@ py::array distances_array(const Distances& distances, std::size_t count);
 /// How far each face is off as an array, all NaN where nothing is asked of any; None unless that was asked for.
 py::object face_errors_of(std::vector<float> errors, const Source& source, const AskedOptions& asked);
 
-/// What is told of every offset.
+/// What is reported of every offset.
 py::dict as_dict(OffsetResult result, const RunFacts& run, const Source& source, const AskedOptions& asked);
 
 RunFacts facts_of_run(const std::string& distance, Clock::time_point start);

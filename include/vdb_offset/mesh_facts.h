@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -47,6 +48,13 @@ enum class Orient {
   FixCavities,  ///< The same, and what lies directly inside of a solid is a cavity in it, and never a solid itself.
 };
 
+/// One component of a mesh, by which it can be found.
+struct PieceFacts {
+  std::size_t vertices = 0;      ///< After welding.
+  Vec3d lower{0.0}, upper{0.0};  ///< Bounding box, world units.
+  std::uint32_t face = 0;        ///< A face of the input that is part of it.
+};
+
 /// What a mesh is made of, counted on its polygons after welding.
 struct VDB_OFFSET_API MeshFacts {
   std::size_t vertices = 0;         ///< Vertices of the input.
@@ -67,6 +75,7 @@ struct VDB_OFFSET_API MeshFacts {
   std::size_t unsettled_conflicts = 0;    ///< Left over: on surfaces with one side only.
   std::size_t closed_components = 0;  ///< Components in which all edges have two faces that agree about the outside.
   std::size_t inside_out_components = 0;  ///< Closed ones that face the wrong way as a whole (see orientation.h).
+  PieceFacts largest_inside_out;          ///< That of most triangles among these, if there is any.
   /// Closed ones that lie directly inside of a solid and point outward like it: solids, or cavities that face the wrong
   /// way. With Orient::FixCavities they count as the latter above.
   std::size_t enclosed_components = 0;

@@ -31,6 +31,18 @@ struct LevelSetFacts {
   double voxel_size = 0;  ///< World units.
 };
 
+/// What a run says of its result in words.
+struct RunSummary {
+  struct Warning {
+    std::string kind;  ///< "wrong": the result may not be what was meant; "off": it is off in places; "input": the
+                       ///< input has a fault that was left as it is.
+    std::string text;
+  };
+  std::string verdict;             ///< Empty: nothing was said.
+  std::vector<Warning> warnings;   ///< The gravest first.
+  std::vector<std::string> notes;  ///< What is not a reason to worry.
+};
+
 /// What a report adds to a result: what was asked for, and where.
 struct RunFacts {
   std::string input, output;
@@ -42,6 +54,7 @@ struct RunFacts {
   std::optional<LayerReport> layers;           ///< If layers were written.
   std::optional<LevelSetFacts> level_set;      ///< If a level set was written, in place of the surface's mesh.
   std::vector<std::pair<std::string, std::string>> options;  ///< Every option's name and value in force.
+  RunSummary summary;
 };
 
 /// The report of a run as JSON text; the keys are documented in docs/report.md.
@@ -53,6 +66,7 @@ VDB_OFFSET_API std::string report_json(const LayersResult& result, const RunFact
 VDB_OFFSET_API std::string report_json(const IsoStatistics& statistics, const RunFacts& run);
 
 /// The findings of a check as JSON text, with the keys of report_json() where they mean the same.
-VDB_OFFSET_API std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset);
+VDB_OFFSET_API std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset,
+                                      const RunSummary& summary = {});
 
 }  // namespace vdb_offset

@@ -47,8 +47,8 @@ OPTIONS: Dict[str, Option] = {
                          "how readily voxels are merged, from 0 to 1; None: where it costs no accuracy"),
     "keep_specks": Option(bool, False, "whether pieces smaller than a voxel are kept"),
     "distance_z": Option(Optional[Union[float, str]], None,
-                         "the distance along z, beside a single one in the plane across it, of its sign; one of both\n"
-                         "may be 0, which is a thousandth of the other", str),
+                         "the distance along z, if `distance` is a single one across it, of the same sign; one of\n"
+                         "them may be 0, which counts as a thousandth of the other", str),
     "corners": Option(Optional[Literal["miter", "round"]], None,
                       '"miter": faces at the distance, at sharp edges as well; "round": vertices at the distance;\n'
                       'None: "miter", and for layers "round"'),
@@ -57,22 +57,22 @@ OPTIONS: Dict[str, Option] = {
     "collision": Option(Literal["limit", "merge"], "limit",
                         '"limit": the result stays valid; "merge": each vertex goes as far as the distance grows'),
     "only": Option(Optional[np.ndarray], None,
-                   "(m,) booleans, or numbers of faces: those that are offset; the others stay, and are in the way"),
+                   "(m,) booleans, or numbers of faces: those that are offset; the others stay, as obstacles"),
     "border": Option(Literal["slide", "fixed", "free"], "slide",
-                     "what the edge of that part does: it slides along what stays, is fixed, or moves freely"),
+                     "the edge of that part slides along what stays, is fixed, or moves freely"),
     "symmetry": Option(Union[bool, str, Sequence[Union[str, Sequence[float]]]], True,
-                       'whether borders stay in the planes that they lie in; False or "none": they need not. Or a\n'
-                       'plane, or several, in which everything stays that lies there: "x=0", "z=-1.5", "A,B,C,D" or\n'
+                       'whether borders stay in the planes that they lie in (False or "none": they need not), or\n'
+                       'planes in which everything stays that lies there: "x=0", "z=-1.5", "A,B,C,D" or\n'
                        "(A, B, C, D) for A x + B y + C z = D"),
-    "obstacles": Option(Optional[Tuple[np.ndarray, Faces]], None, "vertices and faces of what is in the way"),
+    "obstacles": Option(Optional[Tuple[np.ndarray, Faces]], None, "vertices and faces of the obstacles"),
     "clearance": Option(Optional[Union[float, str]], None,
                         'with obstacles: the least distance from these, world units, or "1%" of the diagonal of the\n'
                         "mesh; None: 0", str),
     "close": Option(bool, False,
-                    "whether curves whose ends are near each other, less than a tenth of their length, are closed"),
+                    "whether to join ends of curves that nearly meet, closer than a tenth of the length"),
     "weld": Option(Union[Literal["auto", "exact", "none"], float, str], "auto",
-                   'which vertices are one: "exact": those at equal positions; "auto": also on borders that are one\n'
-                   'but for rounding; "none"; or a number: those that are no farther apart, world units', float),
+                   'which vertices are welded: "exact": at equal positions; "auto": also at borders that differ\n'
+                   'only by rounding; "none"; or a number: those no farther apart, world units', float),
     "orient": Option(Literal["keep", "fix-direction-only", "fix-cavities"], "keep",
                      'outward is where faces point; "fix-direction-only": it is out of what closed parts enclose; '
                      '"fix-cavities": also, closed parts in others are cavities'),
@@ -82,13 +82,13 @@ OPTIONS: Dict[str, Option] = {
                       "what u and v are in a distance: (n, 2) numbers, one pair a vertex; or one a corner, (m, k, 2)\n"
                       "or (c, 2) for c corners in all: a vertex has those of its first corner"),
     "precision": Option(Union[Literal["double", "single"], int], "double",
-                        "what will be kept of coordinates, on which validity is judged; a number: 1 to 17 digits"),
+                        "the precision of coordinates, for which validity is checked; a number: 1 to 17 digits"),
     "voxel_size": Option(Optional[Union[float, str]], None,
                          "of the grid, world units: the length of the edges of an iso-surface; or", float),
-    "voxels_per_distance": Option(Optional[float], None, "how many voxels there are to a distance"),
+    "voxels_per_distance": Option(Optional[float], None, "the distance divided by the voxel size"),
     "unit": Option(Optional[Literal["um", "mm", "cm", "m", "in", "ft"]], None,
-                   'what the numbers of arrays are; then lengths may be texts with a unit, as in "0.2mm"'),
-    "paths": Option(bool, False, "whether the result has the vertices' ways"),
+                   'the unit of the arrays; then lengths may be texts with a unit, as in "0.2mm"'),
+    "paths": Option(bool, False, "whether the result has the paths of vertices"),
     "face_errors": Option(bool, False, "whether the result has how far each face is off its distance"),
     "save_vdb": Option(Optional[Union[str, os.PathLike]], None,
                        "a file to write: phi and the closest triangles as OpenVDB grids"),
@@ -96,8 +96,8 @@ OPTIONS: Dict[str, Option] = {
     "max_memory": Option(Optional[Union[int, str]], None,
                          'for the run: bytes, or "4G"; 0: no limit; None: 80 % of what is free'),
     "reserve": Option(Reserve, None,
-                      "called with the bytes that the run is estimated to hold, before it takes them; may wait until\n"
-                      "there is room for them; False cancels (see the module)"),
+                      "called with the estimated peak of the memory, in bytes, before it is used; may wait until\n"
+                      "there is room; False cancels (see the module)"),
     "progress": Option(Progress, None,
                        "called with the stage at hand and the share of the call that is done; False cancels (see the\n"
                        "module); \"tqdm\": a bar by that package"),

@@ -147,7 +147,7 @@ def a_batch_spares_its_file_of_options(place):
             (place.folder / path).unlink(missing_ok=True)
             os.link(place.folder / name, place.folder / path)
         place.refused(place.run('batch', 'in', 'out', '--config', name, '--report', '{model}.json'), 1,
-                      'a.obj: expected outputs beside the file of --config, got')
+                      'a.obj: its output .* would replace the file of --config')
         place.check((place.folder / name).read_text() == text, 'expected the file of options as it was')
         (place.folder / path).unlink()
     place.file('out/batch.csv', 'distance = 0.1\n')
@@ -160,7 +160,7 @@ def a_batch_spares_what_other_models_read(place):
         place.box(f'in/{name}.obj')
         place.file(f'in/{name}.txt', '0.1\n' * 8)
     place.refused(place.run('batch', 'in', '.', '--distance-from', '{model}.txt', '--output', 'o/{model}.ply', '--report', 'in/{model}_x.txt'),
-                  1, 'a.obj: expected outputs that are no models, nor read with them, got .*a_x.txt')
+                  1, 'a.obj: its output .*a_x.txt would replace a file that the batch reads')
     os.makedirs(place.folder / 'out')
     os.symlink('../in/a.obj', place.folder / 'out/batch.csv')
     before = (place.folder / 'in/a.obj').read_bytes()

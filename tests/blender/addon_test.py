@@ -216,10 +216,10 @@ class Addon(unittest.TestCase):
         self.assertAlmostEqual(moved[:, 2].max(), 1.25, 6)
         self.assertTrue((moved[source[:, 2] < 1] == source[source[:, 2] < 1]).all())
 
-    def test_what_cannot_be_done_is_told_and_changes_nothing(self):
+    def test_what_cannot_be_done_is_refused_and_changes_nothing(self):
         thing = self.made("cube", 1)
         self.refused("no vertex group 'none'", vertex_group="none")
-        self.refused("No vertex gets to its distance", distance=-5)
+        self.refused("No vertex reached its distance", distance=-5)
         self.refused("finite|expected", distance=float("nan"))
         thing.scale = (1, 0, 1)
         bpy.context.view_layer.update()
@@ -249,13 +249,13 @@ class Addon(unittest.TestCase):
             [thing] = here.objects
             bpy.context.scene.collection.objects.link(thing)
             bpy.context.view_layer.objects.active = thing
-            self.refused("of another file")
+            self.refused("linked from another file")
             self.assertEqual(offset(distance=0.1, result="OBJECT"), {"FINISHED"})
             self.assertIsNone(bpy.context.object.data.library)
 
     def test_without_a_mesh_it_is_not_offered(self):
         bpy.ops.object.light_add()
-        with self.assertRaisesRegex(RuntimeError, "The active object is no mesh"):
+        with self.assertRaisesRegex(RuntimeError, "The active object is not a mesh"):
             offset()
         bpy.ops.object.delete()
         self.assertFalse(bpy.ops.mesh.vdb_offset.poll())

@@ -26,7 +26,7 @@
 using namespace vdb_offset;
 namespace fs = std::filesystem;
 
-TEST_CASE("command: what is inside out is told, and which option enlarges it", "[command]") {
+TEST_CASE("command: a warning names what is inside out, and the option that enlarges it", "[command]") {
   const ShellCommand shell;
   Polygons sphere = shapes::icosphere(1, 3);
   std::reverse(sphere.corners.begin(), sphere.corners.end());
@@ -38,7 +38,9 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
   };
   const Run keep = shell("reversed.obj keep.obj -d 0.1 --report keep.json");
   CHECK(keep.code == 0);
-  CHECK_THAT(keep.out, Catch::Contains("the only closed piece is inside out") && Catch::Contains("--orient fix"));
+  CHECK_THAT(
+      keep.out,
+      Catch::Contains("warning: the mesh is inside out: positive distances shrink it. To enlarge it: --orient fix"));
   CHECK(least_radius("keep.obj") < 0.91);
   const Run fixed = shell("reversed.obj fixed.obj -d 0.1 -v --orient fix-direction-only --report fixed.json");
   CHECK_THAT(fixed.out, Catch::Contains("treated as flipped"));
@@ -49,7 +51,15 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
     CHECK(report["mesh"]["closed_components"] == 1);
     CHECK(report["mesh"]["inside_out_components"] == 1);
     CHECK(report["options"]["orient"] == (name == "keep" ? "keep" : "fix-direction-only"));
+    CHECK(report["mesh"]["largest_inside_out"]["vertices"] == 642);
   }
+  // What the run says is in the report, too.
+  const auto report = nlohmann::json::parse(shell.slurp(shell.file("keep.json")));
+  const std::string verdict = report["verdict"];
+  CHECK_THAT(keep.out, Catch::StartsWith(verdict + " ("));
+  CHECK(report["warnings"][0]["kind"] == "wrong");
+  CHECK_THAT(keep.out, Catch::Contains("\nwarning: " + report["warnings"][0]["text"].get<std::string>() + "\n"));
+  CHECK(report["notes"].is_array());
   CHECK(shell("check reversed.obj fixed.obj -d 0.1 --orient fix-direction-only --strict").code == 0);
   CHECK(shell("check reversed.obj fixed.obj -d 0.1").code == 3);
   CHECK(shell("check reversed.obj keep.obj -d 0.1 --strict").code == 0);
@@ -66,7 +76,9 @@ TEST_CASE("command: what is inside out is told, and which option enlarges it", "
   CHECK_THAT(shell("hollow.obj kept.obj -d 0.1").out, Catch::Contains("--orient fix-cavities"));
   CHECK(least_radius("kept.obj") > 0.55);
   const Run shrunk = shell("hollow.obj shrunk.obj -d 0.1 -v --orient fix-cavities");
-  CHECK_THAT(shrunk.out, Catch::Contains("1 of 2 closed pieces are inside out: treated as flipped"));
+  CHECK_THAT(
+      shrunk.out,
+      Catch::Contains("one of 2 closed pieces (642 vertices, 1.73 across, around 0 0 0) is inside out: treated as"));
   CHECK(least_radius("shrunk.obj") < 0.41);
   CHECK(shell("check hollow.obj shrunk.obj -d 0.1 --orient fix-cavities --strict").code == 0);
   const Run wrong = shell("sphere.obj out2.obj -d 0.1 --orient outward");
@@ -104,7 +116,7 @@ Polygons opened(const Polygons& whole, std::size_t axis, bool at_both, bool turn
 TEST_CASE("command: layers that end on the wrong side of an open surface: a warning names the option that turns them",
           "[command][layers][long]") {
   const ShellCommand shell;
-  const std::string told = "If faces point the wrong way: ";
+  const std::string hint = "If faces point the wrong way: ";
   const auto coverage = [&] {
     return nlohmann::json::parse(shell.slurp(shell.file("r.json")))["layers"]["coverage"].get<double>();
   };
@@ -118,22 +130,24 @@ TEST_CASE("command: layers that end on the wrong side of an open surface: a warn
     // As thick as there is no room for inside.
     const std::string thickness = is_tube ? "1.5" : "0.1";
     const std::string to = " o.vtu --report r.json --layers 4 ", total = "--total-thickness " + thickness;
-    CHECK_THAT(shell(name + "_in.obj" + to + total).out, Catch::Contains(told + "--total-thickness -" + thickness));
+    // No other warning asks for a smaller distance.
+    CHECK_THAT(shell(name + "_in.obj" + to + total).out,
+               Catch::Contains(hint + "--total-thickness -" + thickness) && !Catch::Contains("smaller distance"));
     CHECK(coverage() < 0.5);
     // That option does it, and the warning is gone; nor is there one where faces point outward.
     for (const std::string& arguments : {"_in.obj" + to + "--total-thickness -" + thickness, "_out.obj" + to + total}) {
-      CHECK_THAT(shell(name + arguments).out, !Catch::Contains(told));
+      CHECK_THAT(shell(name + arguments).out, !Catch::Contains(hint));
       CHECK(coverage() > 0.99);
     }
     CHECK_THAT(shell(name + "_out.obj" + to + "--total-thickness -" + thickness).out,
-               Catch::Contains(told + "--total-thickness " + thickness));
+               Catch::Contains(hint + "--total-thickness " + thickness));
     // Inward is what was meant, where there is room.
-    CHECK_THAT(shell(name + "_in.obj" + to + "--total-thickness 0.001").out, !Catch::Contains(told));
+    CHECK_THAT(shell(name + "_in.obj" + to + "--total-thickness 0.001").out, !Catch::Contains(hint));
   }
   CHECK_THAT(shell("tube_in.obj o.vtu --layers 4 --first-height 0.4").out,
-             Catch::Contains(told + "--first-height -0.4"));
+             Catch::Contains(hint + "--first-height -0.4"));
   std::ofstream(shell.file("heights.txt")) << "0.5\n1.5\n";
-  CHECK_THAT(shell("tube_in.obj o.vtu --heights heights.txt").out, Catch::Contains(told + "heights below 0"));
+  CHECK_THAT(shell("tube_in.obj o.vtu --heights heights.txt").out, Catch::Contains(hint + "use heights below 0"));
 }
 
 TEST_CASE("command: distances of each vertex, as an expression and from files", "[command]") {
@@ -521,7 +535,7 @@ TEST_CASE("command: what is misspelt or missing is named, with what is meant", "
   const ShellCommand shell;
   const std::string in_out = "sphere.obj out.obj ";
   for (const auto& [arguments, message] :
-       {std::pair{in_out, "missing --distance (a scene alone brings its own)"},
+       {std::pair{in_out, "missing --distance"},
         {in_out + "-d 1 --corner miter", "unknown option --corner; did you mean --corners?"},
         {in_out + "-d 1 --corner=miter", "unknown option --corner; did you mean --corners?"},
         {in_out + "--distnace 1", "unknown option --distnace; did you mean --distance?"},
@@ -1129,10 +1143,11 @@ TEST_CASE("command: a distance that no vertex reaches is refused, with one that 
   io::write_mesh(run.file("box.obj"), shapes::box(Vec3d(2, 2, 0.4), 8, true).view());
   const Run none = run("box.obj out.obj --distance=-0.5");
   CHECK(none.code == 3);
-  CHECK_THAT(none.err, Catch::Contains("reaches the distance of -0.5") && Catch::Contains("comes to 0.2") &&
-                           Catch::Contains("--distance -0."));
+  CHECK_THAT(none.err,
+             Catch::Contains("out.obj: no vertex reached the distance of -0.5: the part is thinner than 2 × 0.5. "
+                             "Try a smaller distance: about half of them reach --distance -0."));
   const auto at = none.err.find("--distance ") + 11;
-  const Run most = run("box.obj out.obj --distance=" + none.err.substr(at, none.err.find(' ', at) - at));
+  const Run most = run("box.obj out.obj --distance=" + none.err.substr(at, none.err.find('\n', at) - at));
   CHECK(most.code == 0);
   const Run some = run("box.obj out.obj --distance=-0.1");
   CHECK(some.code == 0);

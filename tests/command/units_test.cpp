@@ -2,6 +2,7 @@
 // Lengths with units.
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command/shell_command.h"
@@ -57,7 +58,37 @@ TEST_CASE("units: a drawing's size and viewBox tell its unit", "[command]") {
   check_failure(shell, "b.svg p.svg -d 0.1mm", 1, "does not state its unit; add --unit mm");
 }
 
-TEST_CASE("units: what cannot be meant is told", "[command]") {
+TEST_CASE("units: what is said of lengths is in the unit of the distance, also in a file of another one", "[command]") {
+  const ShellCommand shell;
+  const auto says = [&](const std::string& arguments, const std::string& words) {
+    INFO(arguments);
+    CHECK_THAT(shell("sphere.obj " + arguments).out, Catch::Contains(words));
+  };
+  says("a.obj -d 0.2mm --unit in", "within 1 % of 0.2 mm (");
+  says("a.obj -d 0.2 --unit in", "within 1 % of 0.2 in (");
+  says("a.obj -d 0.2", "within 1 % of 0.2 (");
+  says("a.obj -d 1mm --voxel-size 0.1cm --unit in", "within 1 % of 1 mm (");
+  says("a.obj -d 2.54mm --unit in --dry-run", "distance   2.54 mm\nvoxel size");
+  says("a.obj -d 2.54mm --unit in --mode iso --voxel-size 2.54mm", " at 2.54 mm: 1 component");
+  says("a.vtu --layers 2 --total-thickness 5.08mm --unit in", "5.08 mm of 5.08 mm thick on average");
+  // Of a ball 2 in wide with a wall of 0.1 in, the outer radius is 1.1 in: in mm³ 4/3 pi (27.94³ - 25.4³).
+  const std::string solid = shell("sphere.obj a.obj -d 2.54mm --unit in --shell --report r.json").out;
+  CHECK_THAT(solid, Catch::Contains("shell closed, volume ") && Catch::Contains(" mm³ ("));
+  const double volume = std::stod(solid.substr(solid.find("volume ") + 7));
+  CHECK(volume == Approx(22700).epsilon(0.02));
+  const auto report = nlohmann::json::parse(shell.slurp(shell.file("r.json")));
+  CHECK_THAT(solid, Catch::StartsWith(report["verdict"].get<std::string>()));
+  CHECK(report["distance"].get<double>() == Approx(0.1));  // in units of the file
+  CHECK(shell("sphere.obj b.obj -d 2.54mm --unit in -q").code == 0);
+  CHECK_THAT(shell("check sphere.obj b.obj -d 2.54mm --unit in").out,
+             Catch::StartsWith("distance    2.54 mm: 100.000 %") && Catch::Contains("median 2.54 mm"));
+  const Run json = shell("check sphere.obj b.obj -d 2.54mm --unit in --json");
+  CHECK_THAT(nlohmann::json::parse(json.out)["verdict"].get<std::string>(),
+             Catch::StartsWith("b.obj: valid; ") && Catch::Contains("within 1 % of 2.54 mm"));
+  check_failure(shell, "sphere.obj a.obj -d -60mm --unit in", 3, "reached the distance of -60 mm");
+}
+
+TEST_CASE("units: what cannot be meant is refused", "[command]") {
   const ShellCommand shell;
   check_failure(shell, "sphere.obj a.obj -d 0.2mm", 1, "does not state its unit; add --unit mm");
   check_failure(shell, "sphere.obj a.obj -d 0.2 --unit parsec", 1,

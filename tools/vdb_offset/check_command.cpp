@@ -51,7 +51,7 @@ Exit codes: 0 valid, 1 usage, 2 input, 3 not valid (or --strict and a vertex sho
 /// Declares the options that say how far the offset was to go.
 void declare_how_far(CommandLine& line, CheckRequest& request) {
   Request& made = request.made;
-  line.add_unit(made.unit, made.input);
+  line.add_unit(made.unit, made.input, made.lengths);
   line.option("-d,--distance", "D",
               "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
               "expression [the median of what is found]",
@@ -229,54 +229,6 @@ void require_same_points(const Request& made, CurvesView source, CurvesView offs
                                    source.positions.size(), offset.positions.size()));
 }
 
-void print(std::FILE* out, const CheckResult& result, bool curves) {
-  const AchievedSummary achieved = summarise(result.states, result.achieved, result.distances);
-  const char* const vertices = curves ? "points" : "vertices";
-  const auto in = [&](VertexState state) { return std::count(result.states.begin(), result.states.end(), state); };
-  const auto mitered = in(VertexState::Mitered), cut = in(VertexState::Cut);
-  fmt::print(out, "distance    {:.9g}: {:.3f} % of {} {} there{}{}, {} beyond, {} on the wrong side\n", result.distance,
-             100 * achieved.share_reached, achieved.vertices, vertices,
-             mitered > 0 ? fmt::format(", {} of them mitered", mitered) : "",
-             cut > 0 ? fmt::format(", {} with a miter that is cut", cut) : "", result.beyond, result.wrong_side);
-  fmt::print(out, "achieved    least {:.6g}, 1 % {:.6g}, 5 % {:.6g}, median {:.6g}, 95 % {:.6g}, most {:.6g}\n",
-             achieved.least, achieved.quantile_01, achieved.quantile_05, achieved.median, achieved.quantile_95,
-             achieved.most);
-  fmt::print(out,
-             "{}off by {:.3g} % on average, {:.3g} % at 99 of 100 points, {:.3g} % at most; {:.3g} % of the {} within "
-             "1 %\n",
-             curves ? "along       " : "in faces    ", 100 * result.faces.mean, 100 * result.faces.quantile_99,
-             100 * result.faces.worst, 100 * result.faces.at_distance, curves ? "length" : "area");
-  if (result.certified) {
-    fmt::print(out, "proven      {}\n", certified_in_words(*result.certified));
-    Remarks remarks;
-    add_certified(*result.certified, 0, remarks);
-    remarks.print(out, true);
-  }
-  fmt::print(out, "{}{} inverted, {} collapsed{}\n", curves ? "segments    " : "faces       ", result.faults.inverted,
-             result.faults.collapsed,
-             result.faults.crowded ? fmt::format(", {} too near to an obstacle", result.faults.crowded) : "");
-  fmt::print(out, "crossings   {} new pairs of {}; {}{} in the source, {}\n", result.faults.crossings,
-             curves ? "segments" : "triangles", result.more_source_crossings ? "more than " : "",
-             result.source_crossings,
-             result.more_source_crossings ? "what is beside those is not looked at"
-                                          : fmt::format("{} beside those", result.crossings_near_source));
-  if (result.facts.seams.vertices > 0)
-    fmt::print(out,
-               "seams       {} vertices of the source are one with others but for rounding, {:.2g} apart at most\n",
-               result.facts.seams.vertices, result.facts.seams.widest);
-  if (result.facts.seams.hanging > 0)
-    fmt::print(out,
-               "hanging     {} vertices of the source lie on edges of faces that have no corner there, {:.2g} off at "
-               "most\n",
-               result.facts.seams.hanging, result.facts.seams.widest_hanging);
-  if (result.obstacles)
-    fmt::print(out, "obstacles   gap {:.6g}, {:.6g} at the start; {} triangles nearer than the clearance\n",
-               result.obstacles->gap, result.obstacles->starting_gap, result.obstacles->near);
-  if (result.torn)
-    fmt::print(out, "torn        {} {} are apart from others that they stood with\n", result.torn, vertices);
-  fmt::print(out, "{}\n", result.valid() ? "valid" : "not valid");
-}
-
 /// Writes what was found of each vertex and face, as far as that is asked for.
 void write_findings(const Request& made, const Source& source, std::span<const Vec3d> positions,
                     const CheckResult& result, const io::ResultFaces& faces) {
@@ -290,7 +242,7 @@ void write_findings(const Request& made, const Source& source, std::span<const V
 /// Shows a result of which nothing can be measured.
 void show_unmeasured(const Request& made, const Source& source, PolygonView result) {
   constexpr const char* kRemark = "has other vertices or faces than the source, so nothing is measured of it";
-  tell(fmt::format("{}: {}", made.output, kRemark));
+  report_problem(fmt::format("{}: {}", made.output, kRemark));
   write_page(made, source, result, std::string("The result ") + kRemark + ".");
 }
 
@@ -326,7 +278,7 @@ std::optional<CheckResult> measure_meshes(const CheckRequest& request, ProgressB
   if (!source.file && !request.may_differ)
     throw InvalidInput(made.input + ": expected a mesh, or a scene with a file, got a scene's shape");
   const io::MeshFile offset = io::read_mesh(made.output);
-  tell_remarks(offset);
+  report_remarks(offset);
   std::vector<std::string> named = source.files_named;
   for (const auto* const files : {&offset.files_beside, &offset.files_named})
     named.insert(named.end(), files->begin(), files->end());
@@ -402,16 +354,18 @@ int run_check(int argc, const char* const* argv) {
   const Request& made = request->made;
   OutputFiles outputs(made.sync);
   const CheckResult result = measure(*request).value();
-  const std::string json = check_json(result, made.input, made.output);
+  const std::string json =
+      check_json(result, made.input, made.output, summary_of(made, result, request->are_curves).for_report());
   if (!made.report.empty()) write_file(made.report, json);
   outputs.commit(ignore_interrupts);
   const Printout out(is_standard_output(made.report) || is_standard_output(made.states) ||
                      is_standard_output(made.html));
   if (request->json) fmt::print(out, "{}", json);
-  else print(out, result, request->are_curves);
+  else print_check(out, made, result, request->are_curves);
   const bool all_there = summarise(result.states, result.achieved, result.distances).share_reached == 1;
   if (made.strict_faces && !are_within(result.faces, *made.strict_faces, made.output)) return kProcessing;
-  if (result.certified && !is_certified(*result.certified, made.certified_asked(), made.output)) return kProcessing;
+  if (result.certified && !is_certified(*result.certified, made.certified_asked(), made.output, made.lengths))
+    return kProcessing;
   return result.valid() && (all_there || !made.strict) ? kDone : kProcessing;
 }
 

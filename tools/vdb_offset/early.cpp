@@ -35,14 +35,14 @@ namespace {
   try {
     std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {
-    tell("out of memory (see --max-memory, --threads, and ulimit)");
+    report_problem("out of memory (see --max-memory, --threads, and ulimit)");
   } catch (const std::system_error& error) {
-    tell(std::string("expected more threads or memory than there are: ") + error.what() +
-         " (see --threads and ulimit)");
+    report_problem(std::string("expected more threads or memory than there are: ") + error.what() +
+                   " (see --threads and ulimit)");
   } catch (const std::exception& error) {
-    tell(error.what());
+    report_problem(error.what());
   } catch (...) {
-    tell("ended unexpectedly");
+    report_problem("ended unexpectedly");
   }
   remove_temporaries();
   ::_exit(3);

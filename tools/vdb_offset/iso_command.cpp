@@ -98,7 +98,7 @@ std::optional<LevelSetFacts> write_iso_surface(const Job& job, const io::Transpo
   std::optional<LevelSetFacts> level_set;
   if (!job.target) level_set = write_level_set(job, to, result);
   else if (file)
-    tell_losses(job.request, to.mesh, io::write_iso_surface(job.target->at(to.mesh), *file, transported, result));
+    report_losses(job.request, to.mesh, io::write_iso_surface(job.target->at(to.mesh), *file, transported, result));
   else io::write_iso_surface(job.target->at(to.mesh), result);
   result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   if (!to.report.empty()) write_iso_report(job, to, result, start, {.level_set = level_set});
@@ -140,9 +140,9 @@ void write_hollow(const Job& job, const Destination& to, const Hollow& hollow, I
                   Clock::time_point start) {
   const auto writing = Clock::now();
   const io::MeshFile* const file = job.source.file ? &*job.source.file : nullptr;
-  tell_losses(job.request, to.mesh, io::write_hollow(job.target->at(to.mesh), file, hollow, iso));
+  report_losses(job.request, to.mesh, io::write_hollow(job.target->at(to.mesh), file, hollow, iso));
   iso.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
-  if (!to.report.empty()) write_iso_report(job, to, iso, start, {.shell = &hollow.facts, .inner = inner});
+  if (!to.report.empty()) write_iso_report(job, to, iso, start, {.hollow = &hollow, .inner = inner});
 }
 
 /// Whether what --strict-faces asks for is met by all surfaces.
@@ -196,8 +196,8 @@ ExitCode run_iso(const Job& job, const Timing& timing, ProgressBar& bar) {
   bar.clear();
   for (std::size_t i = 0; i < destinations.size() && !job.request.quiet; ++i) {
     const double distance = job.distances[i][0], seconds = seconds_since(timing.start);
-    if (hollow) print_hollow_summary(job, destinations[i].mesh, distance, *hollow, results[i], inner_skin, seconds);
-    else print_iso_summary(job, destinations[i].mesh, distance, results[i], seconds, level_sets[i]);
+    const IsoProducts made{hollow ? &*hollow : nullptr, inner_skin, level_sets[i]};
+    print_iso_summary(job, destinations[i].mesh, distance, results[i], made, seconds);
   }
   return are_faces_there(job, results, inner_skin) ? kDone : kProcessing;
 }

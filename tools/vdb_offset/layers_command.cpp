@@ -73,7 +73,7 @@ void write_surfaces(const Job& job, const LayersResult& layers) {
     const std::string& path = job.files.layers[k];
     const std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
     if (source.curves) write_curves(path, source, surface, write_options(job.request, path));
-    else if (source.file) tell_losses(job.request, path, io::write_mesh(job.target->at(path), *source.file, surface));
+    else if (source.file) report_losses(job.request, path, io::write_mesh(job.target->at(path), *source.file, surface));
     else io::write_mesh(job.target->at(path), source.view(), surface);
   }
 }

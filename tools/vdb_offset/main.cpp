@@ -72,17 +72,17 @@ ExitCode run(const Request& request) {
   bar.expect_writing(writing_share(job));
   job.options.progress = bar.callback();
   if (of_batch) {
-    if (source.scene && !source.scene->mesh_path.empty()) tell_file_read(source.scene->mesh_path);
-    for (const std::string& path : job.files_of_heights) tell_file_read(path);
+    if (source.scene && !source.scene->mesh_path.empty()) report_file_read(source.scene->mesh_path);
+    for (const std::string& path : job.files_of_heights) report_file_read(path);
     if (source.file)
-      for (const std::string& path : source.file->files_beside) tell_file_read(path);
+      for (const std::string& path : source.file->files_beside) report_file_read(path);
     job.options.reserve = wait_for_memory;
   }
   return run(job, {start, seconds_since(start)}, bar);
 }
 
 int fail(ExitCode code, const char* message) {
-  tell(message);
+  report_problem(message);
   return code;
 }
 

@@ -80,7 +80,7 @@ std::string readable(std::string_view message) {
   return shortened(line, kLongestMessage);
 }
 
-void tell(std::string_view message) noexcept {
+void report_problem(std::string_view message) noexcept {
   try {
     write_to_error("vdb_offset: " + readable(message) + "\n");
   } catch (const std::bad_alloc&) {

@@ -22,7 +22,7 @@ std::string as_text(std::string_view bytes);
 std::string readable(std::string_view message);
 
 /// Prints `vdb_offset: MESSAGE` on standard error. If that is closed or full, the message is lost.
-void tell(std::string_view message) noexcept;
+void report_problem(std::string_view message) noexcept;
 
 /// A text for the user, kept until it is complete, then printed on standard output or, if that is taken, on standard
 /// error. require_printed() finds out whether that failed.

@@ -36,22 +36,23 @@ std::vector<OffsetResult> compute(const Job& job) {
 void require_field(const Job& job) {
   if (job.options.keep_field &&
       std::all_of(job.distances.begin(), job.distances.end(), [](const Distances& d) { return d.scale() == 0; }))
-    throw UsageError("--save-vdb: expected a distance other than 0, for which there is a field");
+    throw UsageError("--save-vdb: expected a distance other than 0, which needs a field");
 }
 
 /// Whether a result is what --strict asks for. If not, says why.
 bool is_as_asked(const OffsetResult& result, bool of_curves) {
   const OffsetStatistics& statistics = result.statistics;
   const auto is_clear = [](std::size_t triangles, const char* what) {
-    if (triangles > 0) tell(fmt::format("--strict: {} triangles are nearer to {} than asked", triangles, what));
+    if (triangles > 0)
+      report_problem(fmt::format("--strict: {} triangles are nearer to {} than asked", triangles, what));
     return triangles == 0;
   };
   if (statistics.fit) return is_clear(statistics.fit->near, "the mesh that they are to fit");
   if (statistics.obstacles && !is_clear(statistics.obstacles->near, "an obstacle")) return false;
   const double reached = summarise(result).share_reached;
   if (reached < 1)
-    tell(fmt::format("--strict: {:.4f} % of the {} fall short of the distance", 100 * (1 - reached),
-                     of_curves ? "points" : "vertices"));
+    report_problem(fmt::format("--strict: {:.4f} % of the {} fall short of the distance", 100 * (1 - reached),
+                               of_curves ? "points" : "vertices"));
   return reached == 1;
 }
 
@@ -61,8 +62,8 @@ double rounded_down(double length) {
   return std::floor(length / step) * step;
 }
 
-/// Whether any vertex that was to move arrives. If none does, says how far most come.
-bool reaches_anything(const OffsetResult& result, const std::string& output, bool of_curves) {
+/// Whether any vertex that was to move arrives. If none does, says so, and how far half of them come.
+bool reaches_anything(const Job& job, const OffsetResult& result, const std::string& output) {
   std::vector<double> achieved;
   for (std::size_t v = 0; v < result.states.size(); ++v) {
     if (result.states[v] == VertexState::Unused || result.distances[v] == 0) continue;
@@ -72,15 +73,19 @@ bool reaches_anything(const OffsetResult& result, const std::string& output, boo
   if (achieved.empty()) return true;
   const auto middle = achieved.begin() + static_cast<std::ptrdiff_t>(achieved.size() / 2);
   std::nth_element(achieved.begin(), middle, achieved.end());
-  const double farthest = *std::max_element(achieved.begin(), achieved.end()), asked = result.distances.farthest();
-  std::string most;
-  if (*middle > 0)
-    most = fmt::format(", and about half of them to {0:.2g} (--distance {0:.2g} is reached there)",
-                       std::copysign(rounded_down(*middle), asked));
-  tell(
-      fmt::format("{}: none of {} {} reaches the distance of {:.6g}, for which there is no room: the farthest comes "
-                  "to {:.3g}{}",
-                  output, achieved.size(), of_curves ? "points" : "vertices", asked, farthest, most));
+  const Lengths& lengths = job.request.lengths;
+  const double asked = result.distances.farthest();
+  const MeshFacts& facts = result.statistics.facts;
+  const std::string why = asked < 0 && !job.curves() && facts.closed() && facts.inside_out_components == 0 &&
+                                  result.statistics.limit.source_crossings == 0
+                              ? fmt::format("the part is thinner than 2 × {}", lengths(-asked))
+                              : "there is no room for it";
+  std::string smaller;
+  if (const double half = lengths.in_unit(*middle); half > 0)
+    smaller = fmt::format(": about half of them reach --distance {}",
+                          lengths.value(std::copysign(rounded_down(half), asked)));
+  report_problem(fmt::format("{}: no {} reached the distance of {}: {}. Try a smaller distance{}", output,
+                             job.curves() ? "point" : "vertex", lengths(asked), why, smaller));
   return false;
 }
 
@@ -97,15 +102,15 @@ std::string in_words(const FaultCounts& counts) {
 }
 
 /// Names the outputs that are not valid although they should be. Returns false if there are none.
-bool tell_faults(const Job& job, std::span<const OffsetResult> results) {
+bool report_faults(const Job& job, std::span<const OffsetResult> results) {
   bool any = false;
   const std::vector<Destination>& destinations = job.files.outputs;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const FaultCounts& left = results[i].statistics.limit.left;
     if (left.total() == 0) continue;
     any = true;
-    tell(fmt::format("{}: not valid: {} are left", i < destinations.size() ? destinations[i].mesh : "--inner",
-                     in_words(left)));
+    report_problem(fmt::format("{}: not valid: {} are left", i < destinations.size() ? destinations[i].mesh : "--inner",
+                               in_words(left)));
   }
   return any;
 }
@@ -116,25 +121,25 @@ std::optional<Products> try_outputs(const Job& job, const Outcome& outcome, cons
     return write_outputs(job, outcome, timing.start);
   } catch (const io::NoCadModel& error) {
     if (job.files.outputs.size() == 1) throw;
-    tell(error.what());
+    report_problem(error.what());
     return std::nullopt;
   }
 }
 
 /// Names the CAD models of which not all could be made. Returns false if there are none.
-bool tell_cad_gaps(const Job& job, std::span<const std::optional<Products>> all) {
+bool report_cad_gaps(const Job& job, std::span<const std::optional<Products>> all) {
   bool any = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
     any |= !all[i];
     if (!all[i] || !all[i]->cad) continue;
     const CadFileFacts& cad = *all[i]->cad;
     if (cad.made == CadFileFacts::Made::Facets && !job.request.quiet)
-      tell(fmt::format("{}: of triangles, as no other model could be made: {}", job.files.outputs[i].mesh,
-                       fmt::join(cad.gaps, "; ")));
+      report_problem(fmt::format("{}: of triangles, as no other model could be made: {}", job.files.outputs[i].mesh,
+                                 fmt::join(cad.gaps, "; ")));
     if (cad.made != CadFileFacts::Made::Faces) continue;
     any = true;
-    tell(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)",
-                     job.files.outputs[i].mesh, fmt::join(cad.gaps, "; ")));
+    report_problem(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)",
+                               job.files.outputs[i].mesh, fmt::join(cad.gaps, "; ")));
   }
   return any;
 }
@@ -145,14 +150,14 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
   if (job.source.scene) failed = scene::unmet(job.expect, job.source.view(), results.front());
   if (job.expect.volume)
     for (std::string& expectation : scene::unmet(job.expect, *shell)) failed.push_back(std::move(expectation));
-  for (const std::string& expectation : failed) tell(fmt::format("{}: {}", job.request.input, expectation));
-  if (!failed.empty() || tell_faults(job, results)) return kProcessing;
+  for (const std::string& expectation : failed) report_problem(fmt::format("{}: {}", job.request.input, expectation));
+  if (!failed.empty() || report_faults(job, results)) return kProcessing;
   const auto output = [&](std::size_t i) {
     return i < job.files.outputs.size() ? job.files.outputs[i].mesh : "--inner";
   };
   bool faces_there = true;
   for (std::size_t i = 0; i < results.size() && !job.to_fit; ++i)
-    faces_there &= reaches_anything(results[i], output(i), job.curves());
+    faces_there &= reaches_anything(job, results[i], output(i));
   for (std::size_t i = 0; i < results.size() && job.request.strict_faces; ++i)
     faces_there &= are_within(results[i].statistics.faces, *job.request.strict_faces, output(i));
   if (!faces_there) return kProcessing;
@@ -160,7 +165,8 @@ ExitCode judge(const Job& job, std::span<const OffsetResult> results, const std:
   for (std::size_t i = 0; i < results.size() && job.request.strict; ++i)
     as_asked &= is_as_asked(results[i], job.curves());
   if (const auto& certified = results.front().statistics.certified)
-    as_asked &= is_certified(*certified, job.request.certified_asked(), job.files.outputs.front().mesh);
+    as_asked &=
+        is_certified(*certified, job.request.certified_asked(), job.files.outputs.front().mesh, job.request.lengths);
   return as_asked ? kDone : kProcessing;
 }
 
@@ -183,7 +189,7 @@ ExitCode finish(const Job& job, std::vector<OffsetResult>& results, const Refine
   for (std::size_t i = 0; i < job.files.outputs.size() && !request.quiet; ++i)
     if (made[i]) print_summary(job, {job.files.outputs[i], results[i], inner}, *made[i], seconds_since(timing.start));
   const ExitCode judged = judge(job, results, made.back() ? made.back()->shell : std::nullopt);
-  return tell_cad_gaps(job, made) ? kProcessing : judged;
+  return report_cad_gaps(job, made) ? kProcessing : judged;
 }
 
 /// Gives each vertex of a file what the one has that it is a copy of: in STL facets have vertices of their own.

@@ -8,6 +8,7 @@
 #include "distances/part_distances.h"
 #include "messages.h"
 #include "page/run_pages.h"
+#include "summary/summary.h"
 #include "vdb_offset/api.h"
 #include "vdb_offset/field.h"
 #include "vdb_offset/io/cad_file.h"
@@ -102,6 +103,7 @@ void write_report_and_page(const Job& job, const Outcome& outcome, const Product
   RunFacts facts = facts_of(job, to, start);
   facts.shell = made.shell;
   facts.cad = made.cad;
+  facts.summary = summary_of(job, outcome, made).for_report();
   const std::string report = report_json(outcome.result, facts);
   if (!to.report.empty()) write_file(to.report, report);
   if (!to.html.empty()) write_page(job, outcome, report);
@@ -160,18 +162,18 @@ void write_paths(const std::string& path, const std::vector<std::vector<Vec3d>>&
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-void tell_losses(const Request& request, const std::string& path, const io::WriteResult& written) {
+void report_losses(const Request& request, const std::string& path, const io::WriteResult& written) {
   if (request.quiet) return;
-  if (!written.lost.empty()) tell(fmt::format("{}: not carried over: {}", path, written.lost));
+  if (!written.lost.empty()) report_problem(fmt::format("{}: not carried over: {}", path, written.lost));
   if (written.disagreeing_normals > 0)
-    tell(
+    report_problem(
         fmt::format("{}: {} normals (vn) are shared by vertices that ask for different ones now; they got the mean "
                     "(--normals keep leaves all as they were)",
                     path, written.disagreeing_normals));
 }
 
 void write_refinement(const Request& request, const RefinedSource& refined) {
-  tell_losses(request, request.output, {fmt::format("{}", fmt::join(refined.lost, ", ")), 0});
+  report_losses(request, request.output, {fmt::format("{}", fmt::join(refined.lost, ", ")), 0});
   const auto& [tolerance, text, path, map] = *request.tolerance;
   if (!path.empty()) {
     const PolygonView mesh = refined.source.view();
@@ -180,7 +182,7 @@ void write_refinement(const Request& request, const RefinedSource& refined) {
     io::WriteResult written;
     if (refined.source.file) written = io::write_mesh(path, *refined.source.file, mesh.positions, options);
     else io::write_mesh(path, mesh, options);
-    tell_losses(request, path, written);
+    report_losses(request, path, written);
   }
   if (!map.empty()) io::write_vertex_map(map, refined.refinement, refined.vertex);
 }
@@ -189,13 +191,17 @@ std::string layers_report(const Job& job, const LayersResult& result, const Laye
                           Clock::time_point start) {
   RunFacts facts = facts_of(job, job.files.outputs.front(), start);
   facts.layers = report;
+  facts.summary = summary_of(job, result, report).for_report();
   return report_json(result, facts);
 }
 
 void write_iso_report(const Job& job, const Destination& to, const IsoResult& result, Clock::time_point start,
                       const IsoProducts& made) {
   RunFacts facts = facts_of(job, to, start);
-  if (made.shell) facts.shell = *made.shell;
+  facts.summary =
+      summary_of(job, to.mesh, job.distances[static_cast<std::size_t>(&to - job.files.outputs.data())][0], result, made)
+          .for_report();
+  if (made.hollow) facts.shell = made.hollow->facts;
   if (made.inner) facts.inner_surface = made.inner->statistics;
   facts.level_set = made.level_set;
   write_file(to.report, report_json(result.statistics, facts));
@@ -237,7 +243,7 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   } else written = write_mesh_or_shell(job, outcome, shell);
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);
   write_report_and_page(job, outcome, made, start);
-  tell_losses(request, to.mesh, written);
+  report_losses(request, to.mesh, written);
   return made;
 }
 

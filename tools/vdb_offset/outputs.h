@@ -40,8 +40,8 @@ struct Outcome {
   const OffsetResult* inner = nullptr;  ///< The inner skin of a shell, if that was asked for.
 };
 
-/// Tells on standard error what a mesh could not be given.
-void tell_losses(const Request& request, const std::string& path, const io::WriteResult& written);
+/// Prints on standard error what a mesh could not be given.
+void report_losses(const Request& request, const std::string& path, const io::WriteResult& written);
 
 /// Writes the source with the faces that the offset has, and where the added vertices are, as far as that is asked for.
 void write_refinement(const Request& request, const RefinedSource& refined);
@@ -55,8 +55,8 @@ std::vector<std::pair<std::string, std::string>> run_metadata(const Job& job, co
 
 /// What an iso-surface has become, if it is not written as a mesh of its own.
 struct IsoProducts {
-  const ShellFacts* shell = nullptr;
-  const IsoResult* inner = nullptr;
+  const Hollow* hollow = nullptr;
+  const IsoResult* inner = nullptr;  ///< The inner skin of that, if it was made as well as the outer one.
   std::optional<LevelSetFacts> level_set{};
 };
 

@@ -116,8 +116,8 @@ RefinedSource refined_source(const Source& source, Refinement refinement) {
   return refined;
 }
 
-void tell_remarks(const io::MeshFile& file) {
-  for (const std::string& remark : file.remarks) tell(fmt::format("{}: {}", file.path, remark));
+void report_remarks(const io::MeshFile& file) {
+  for (const std::string& remark : file.remarks) report_problem(fmt::format("{}: {}", file.path, remark));
 }
 
 namespace {
@@ -160,7 +160,7 @@ Source read_source(const Request& request, bool curves, const ProgressCallback& 
   if (curves) {
     source.curves = io::read_curves(request.input, curve_reading(request));
     use_unit(request, source.curves->file);
-    if (!request.quiet) tell_remarks(source.curves->file);
+    if (!request.quiet) report_remarks(source.curves->file);
     if (request.close) close_curves(request, source);
     return source;
   }
@@ -174,18 +174,18 @@ Source read_source(const Request& request, bool curves, const ProgressCallback& 
     use_unit(request, *source.file);
     list_named(*source.file, source);
   }
-  if (source.file && !request.quiet) tell_remarks(*source.file);
+  if (source.file && !request.quiet) report_remarks(*source.file);
   for (const std::string& path : request.obstacles) {
     const io::MeshFile obstacle = io::read_mesh(path, reading_of(path, request));
     require_same_unit(source, "--obstacle", obstacle);
-    if (!request.quiet) tell_remarks(obstacle);
+    if (!request.quiet) report_remarks(obstacle);
     list_named(obstacle, source);
     add(source.obstacles, obstacle.polygons);
   }
   if (!request.fit.empty()) {
     const io::MeshFile to_fit = io::read_mesh(request.fit, reading_of(request.fit, request));
     require_same_unit(source, "--fit", to_fit);
-    if (!request.quiet) tell_remarks(to_fit);
+    if (!request.quiet) report_remarks(to_fit);
     list_named(to_fit, source);
     source.to_fit = to_fit.polygons;
   }

@@ -51,7 +51,7 @@ io::CurveReading curve_reading(const Request& request);
 io::CadReading cad_reading(const Request& request);
 
 /// Prints what is wrong with a file that was read all the same.
-void tell_remarks(const io::MeshFile& file);
+void report_remarks(const io::MeshFile& file);
 
 /// Reads INPUT, as curves or as a mesh, and the meshes beside it. \param progress of reading INPUT, as far as that is
 /// known: of CAD models. \throw ReadError, InvalidInput

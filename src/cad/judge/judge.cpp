@@ -254,7 +254,7 @@ class Judge {
     const double was = volume_of(source_), made = volume_of(made_), is = volume_of(result_);
     if (made * was < 0) fault("walls are gone: the result is turned inside out");
     if (std::abs(std::abs(made) - std::abs(is)) > kMostVolumeOff * std::max(std::abs(made), std::abs(is)))
-      fault("walls are gone: who reads the result turns a part of it round");
+      fault("walls are gone: readers turn a part of the result round");
   }
 
   // Of an offset to one side alone: whether points are on that side of the source, or near to it, where triangles leave

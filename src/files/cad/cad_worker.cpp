@@ -42,8 +42,8 @@ double in_mib(std::uint64_t bytes) { return static_cast<double>(bytes) / 1048576
 void require_least_memory(const std::string& path, std::size_t bytes, std::uint64_t most_memory) {
   const std::uint64_t least = kLeastOfReader + bytes;
   if (most_memory == 0 || most_memory >= least) return;
-  throw OutOfBudget(fmt::format("{}: expected to fit into {:.3g} MiB (--max-memory), got at least {:.3g} MiB", path,
-                                in_mib(most_memory), in_mib(least)));
+  throw OutOfBudget(fmt::format("{}: needs at least {:.3g} MiB, more than --max-memory allows ({:.3g} MiB)", path,
+                                in_mib(least), in_mib(most_memory)));
 }
 
 /// The worker's own name of a format.
@@ -107,8 +107,8 @@ struct CadWorker::State {
 
   [[noreturn]] void fail_by_memory(const std::string& what) {
     if (most_memory == 0) throw OutOfBudget(path + ": " + what);
-    throw OutOfBudget(fmt::format("{}: expected to fit into {:.3g} MiB (--max-memory), got a model that needs more",
-                                  path, in_mib(most_memory)));
+    throw OutOfBudget(
+        fmt::format("{}: needs more memory than --max-memory allows ({:.3g} MiB)", path, in_mib(most_memory)));
   }
 
   [[noreturn]] void fail_by_time() {

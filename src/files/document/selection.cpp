@@ -267,7 +267,7 @@ std::vector<std::uint8_t> select_faces(const MeshFile& mesh, std::span<const Sel
   for (std::size_t f = 0; f < chosen.size(); ++f)
     if (left_out[f]) chosen[f] = 0;
   if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
-    throw InvalidOption(mesh.path + ": expected faces beside those behind 'not:', found none");
+    throw InvalidOption(mesh.path + ": no faces are left, as 'not:' leaves all of them out");
   return chosen;
 }
 

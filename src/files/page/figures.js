@@ -107,16 +107,16 @@ const FIGURES = (function () {
   // A table of the values, then a part that can be opened for each value that has parts.
   function addRows(parent, values) {
     const table = make('table', parent), isPlain = value => value === null || typeof value !== 'object';
+    const isList = value => Array.isArray(value) && value.every(each => isPlain(each) || each.text);
     for (const [key, value] of Object.entries(values)) {
-      const isList = Array.isArray(value) && value.every(isPlain);
-      if (!isPlain(value) && !isList) continue;
+      if (!isPlain(value) && !isList(value)) continue;
       const row = make('tr', table);
       make('td', row, key.replaceAll('_', ' '));
-      make('td', row, isList ? value.map(inCell).join(', ') : inCell(value));
+      make('td', row, isList(value) ? value.map(each => each?.text ?? inCell(each)).join(', ') : inCell(value));
     }
     const open = ['vertices_by_state', 'achieved', 'faces'];
     for (const [key, value] of Object.entries(values)) {
-      if (isPlain(value) || (Array.isArray(value) && value.every(isPlain))) continue;
+      if (isPlain(value) || isList(value)) continue;
       const part = make('details', parent);
       if (open.includes(key)) part.open = true;
       make('summary', part, key.replaceAll('_', ' '));
@@ -127,8 +127,8 @@ const FIGURES = (function () {
   function shownOf(facts, {shown, vertices}) {
     const {elements, of} = shown, what = facts.curves ? 'segments' : 'triangles';
     return elements === of ? `${inWords(of)} ${what}, ${inWords(vertices)} vertices, all shown.` :
-        `Shown: ${inWords(elements)} of ${inWords(of)} ${what}. Of vertices that are close together one is drawn, the one that ` +
-        'misses the distance most; its number and distances are its own. All figures are of all vertices.';
+        `Shown: ${inWords(elements)} of ${inWords(of)} ${what}. Of several vertices close together, the one that misses the distance ` +
+        'most is drawn, with its own number and distances. Figures are of all vertices.';
   }
 
   function show(facts, report) {

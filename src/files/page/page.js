@@ -11,7 +11,7 @@
   // In words, what each state means.
   const WHY = {
     reached: 'It is at its distance.',
-    collision: 'It met the offset that comes from another part of the surface.',
+    collision: 'It met the offset of another part of the surface.',
     limited: 'Held back: moving on would invert, collapse or cross faces.',
     outside_field: 'Its path left the grid of the distance field.',
     unused: 'No face uses it; it stays where it is.',
@@ -326,7 +326,7 @@
   modes = COLOURS.modes(facts, data);
   looks.colour = isAlone && modes.group && facts.groups.length > 1 ? 'group' : Object.keys(modes)[0];
   addControls();
-  const showAll = make('button', byId('tools'), 'Show all', {type: 'button', title: 'The whole view, as at first (Home)'});
+  const showAll = make('button', byId('tools'), 'Show all', {type: 'button', title: 'Reset the view (Home)'});
   showAll.addEventListener('click', () => view.showAll());
   PLACES.addWorst(facts, data, view, isSurfaceShown, tell);
   PLACES.addPicture(facts, view);

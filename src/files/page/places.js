@@ -69,12 +69,12 @@ const PLACES = (function () {
     if (!data.surfaces.some(each => each.share || each.error)) return;
     const button = make('button', byId('tools'), 'Next worst place', {
       id: 'worst', type: 'button',
-      title: 'Where a vertex or a face misses the distance by the largest share of it; then the next such place, at least 5 % of the diagonal away'});
+      title: 'Go to the vertex or face that misses its distance by the largest share, then to the next that is at least 5 % of the diagonal away'});
     let visited = [];
     button.addEventListener('click', () => {
       const found = worst(facts, data, view, isSurfaceShown, visited), note = byId('message');
       if (!found) {
-        note.textContent = visited.length === 0 ? 'All that is shown is within 1 % of the distance.' :
+        note.textContent = visited.length === 0 ? 'Everything shown is within 1 % of the distance.' :
             `No other place misses the distance by more than 1 % of it (${visited.length} visited). The next click starts again.`;
         visited = [];
         return;

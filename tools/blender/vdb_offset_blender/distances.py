@@ -82,12 +82,12 @@ def offset(thing, distance, only=None, **options):
     except library.Error as error:
         raise Refused(str(error)) from None
     if result.reached == 0 and np.any(result.distances != 0):
-        raise Refused("No vertex gets to its distance: the mesh is thinner than that, or it is on the wrong side")
+        raise Refused("No vertex reached its distance: the mesh is thinner, or the distance has the wrong sign")
     return frame.back(result.positions), result
 
 
-def told(result):
-    """A line on what became of the vertices and faces, and whether that is all that was asked for."""
+def summary_of(result):
+    """One line about the result, and whether all vertices reached their distance."""
     count = result.statistics["vertices_by_state"]
     parts = [f"{len(result.states)} vertices: {100 * result.reached:.4g} % at their distance"]
     said = {"collision": "stopped by the other side", "limited": "held back to stay valid", "outside_field": "beyond the grid",

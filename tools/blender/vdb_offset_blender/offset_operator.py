@@ -19,25 +19,25 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
     result: EnumProperty(name="Result", default="KEY", items=[
         ("KEY", "Shape Key", "A new shape key of this mesh, in full effect"),
         ("OBJECT", "New Object", "A copy of the object, with its vertices moved")])
-    vertex_group: StringProperty(name="Vertex Group", description="Its weights give the distance of each vertex: at weight 1 "
-                                 "Distance, at weight 0 the other one, and between these in proportion")
-    distance_at_zero: FloatProperty(name="At Weight 0", description="How far vertices go that have weight 0, or are not in the group",
+    vertex_group: StringProperty(name="Vertex Group", description="Its weights give the distance of each vertex: Distance at weight 1, "
+                                 "At Weight 0 at weight 0, in proportion between")
+    distance_at_zero: FloatProperty(name="At Weight 0", description="Distance of vertices that have weight 0 or are outside the group",
                                     default=0, unit="LENGTH", soft_min=-10, soft_max=10, precision=4)
     corners: EnumProperty(name="Corners", default="miter", items=[
         ("miter", "Miter", "Faces are at the distance; vertices on sharp edges are farther away"),
         ("round", "Round", "Vertices are at the distance; flat faces at sharp edges are nearer")])
-    miter_limit: FloatProperty(name="Miter Limit", description="No vertex goes farther than so many distances", default=4, min=1,
+    miter_limit: FloatProperty(name="Miter Limit", description="No vertex goes farther than this many distances", default=4, min=1,
                                soft_max=10)
     collision: EnumProperty(name="Narrow Places", default="limit", items=[
         ("limit", "Stay Valid", "Vertices are held back where faces would fold or cross"),
         ("merge", "Merge", "Each vertex goes as far as the distance grows; faces may fold or cross")])
-    only_selected: BoolProperty(name="Selected Faces Only", description="The other faces stay, and are in the way", default=False)
+    only_selected: BoolProperty(name="Selected Faces Only", description="The other faces stay, and act as obstacles", default=False)
 
     @classmethod
     def poll(cls, context):
         if context.object is not None and context.object.type == "MESH":
             return True
-        cls.poll_message_set("The active object is no mesh")
+        cls.poll_message_set("The active object is not a mesh")
         return False
 
     def execute(self, context):
@@ -58,9 +58,9 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
     def offset(self, context, thing):
         mesh = thing.data
         if thing.use_dynamic_topology_sculpting:
-            raise distances.Refused("What is sculpted with dynamic topology is no mesh yet: leave sculpt mode")
+            raise distances.Refused("The mesh is being sculpted with dynamic topology: leave sculpt mode first")
         if self.result == "KEY" and (thing.library or mesh.library or mesh.override_library):
-            raise distances.Refused("The mesh is of another file: take a new object as the result")
+            raise distances.Refused("The mesh is linked from another file: choose New Object as the result")
         options = {"corners": self.corners, "collision": self.collision}
         if self.corners == "miter":
             options["miter_limit"] = self.miter_limit
@@ -79,7 +79,7 @@ class MESH_OT_vdb_offset(bpy.types.Operator):
             arrays.add_shape_key(thing, moved)
         else:
             arrays.add_object(context, thing, moved)
-        return distances.told(result)
+        return distances.summary_of(result)
 
     def distance_of(self, thing):
         """A number, or an array with one for each vertex."""

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `vdb_offset batch`: which models are to be done, and what is told of them.
+// `vdb_offset batch`: which models are to be done, and what is reported of them.
 #include "batch/batch_command.h"
 
 #include <fcntl.h>
@@ -158,14 +158,14 @@ void Batch::end(std::size_t model, const Record& record, ProgressLine& progress)
   ++(code == 0 ? done_ : failed_);
   progress.count(work_of(model), code != 0);
   progress.clear();
-  if (code != 0) tell(fmt::format("{}: failed ({}): {}", models_[model].path, code, record.ending.message));
+  if (code != 0) report_problem(fmt::format("{}: failed ({}): {}", models_[model].path, code, record.ending.message));
   if (request_.verbose) fmt::print(Printout(), "{}", rows);
 }
 
 ExitCode Batch::run(const RunMark& mark) {
   const auto begun = Clock::now();
   if (stop_signal()) {  // not all models have been looked at, and the table of the last time is true still
-    tell("stopped: no model was begun; the table is as it was");
+    report_problem("stopped: no model was begun; the table is as it was");
     return kProcessing;
   }
   double work = 0;
@@ -181,8 +181,8 @@ ExitCode Batch::run(const RunMark& mark) {
   progress.clear();
   table_.finish();
   if (stop_signal())
-    tell(fmt::format("stopped after {} of {}. Run the same command to resume", kept_ + done_ + failed_,
-                     models_in_words(models_.size())));
+    report_problem(fmt::format("stopped after {} of {}. Run the same command to resume", kept_ + done_ + failed_,
+                               models_in_words(models_.size())));
   else if (!request_.quiet) print_summary(seconds_since(begun));
   return failed_ + left_out_ == 0 ? kDone : kProcessing;
 }
@@ -206,7 +206,7 @@ int run_batch(int argc, const char* const* argv) {
   if (!request) return kDone;
   settle_folders(*request);
   const FoundModels found = find_models(request->folder, request->out, request->selection);
-  for (const std::string& folder : found.unreadable) tell(folder + "; left out");
+  for (const std::string& folder : found.unreadable) report_problem(folder + "; left out");
   require_apart(*request, found.models);
   if (request->dry_run) {
     Batch(*request, found).print_plan();

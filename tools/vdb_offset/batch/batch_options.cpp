@@ -23,14 +23,15 @@ constexpr const char* kBatchAbout =
     "each model as soon as it ends.";
 
 constexpr const char* kBatchMore = R"(
-All options of vdb_offset hold for each model (vdb_offset --help). Those that name a file take a pattern, in which
-{model} is the model's path under DIR without its ending, and {ending} that ending: '{model}.states.ply'. What is
-written goes below OUT. Of what is read, {model} stands for the path with DIR: --distance-from '{model}.txt'.
-Some are for the batch as a whole: --max-memory holds for all models at once, by their estimates (with --sshlogin of each
-machine, with --slurm of each job); --dry-run prints which models would be done; --verbose prints the row of each model as it ends; --quiet prints nothing but errors.
+All options of vdb_offset apply to each model (vdb_offset --help). Names of files are patterns: {model} is the model's
+path under DIR without its ending, {ending} that ending, as in '{model}.states.ply'. Outputs go below OUT. In names of
+files that are read, {model} includes DIR: --distance-from '{model}.txt'.
+Some options are for the whole batch: --max-memory limits all models at once, by their estimates (with --sshlogin per
+machine, with --slurm per job); --dry-run prints which models would be done; --verbose prints the row of each model as
+it ends; --quiet only prints errors.
 
-Models are files that end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .svg, .dxf, .dat or .xy, compressed
-with .gz or .zst behind it; others (.txt, scenes in .json, .fbx) are taken where --models names them.
+Models are files that end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .svg, .dxf, .dat or .xy, also
+with .gz or .zst behind it; others (.txt, scenes in .json, .fbx) have to be chosen with --models.
 
 Examples:
   vdb_offset batch models bigger --distance 1%
@@ -40,8 +41,8 @@ Examples:
   vdb_offset batch models bigger --distance 1% --sshlogin :,node1,node2
   vdb_offset batch models bigger --distance 1% --slurm compute
 
-Exit codes: 0 all models are done, 1 usage, 2 input, 3 a model failed, 4 output. Ctrl-C and the like end the batch and
-the models at work; the table then holds all that ended, and the same call goes on from there.)";
+Exit codes: 0 all models are done, 1 usage, 2 input, 3 a model failed, 4 output. Ctrl-C and similar signals end the batch
+and its running models; the table then has all that were done. Run the same command to resume.)";
 
 constexpr int kMostJobs = 4096;  // so that a mistyped number does not start that many processes; not measured
 
@@ -58,8 +59,8 @@ void declare_batch(CommandLine& line, BatchRequest& request, bool& reports) {
                 [&request](const std::string& text) { request.selection.push_back(text); });
   line.option("--jobs", "N", "Models at once; with --sshlogin, on each machine [one for each processor]", request.jobs,
               count_between("--jobs", 1, kMostJobs));
-  line.flag("--reports", "Keep the report of each model beside its output, as OUTPUT.json", reports);
-  line.flag("--retry-failed", "Do models again that failed, too", request.retry_failed);
+  line.flag("--reports", "Write the report of each model next to its output, as OUTPUT.json", reports);
+  line.flag("--retry-failed", "Also try models again that failed", request.retry_failed);
   line.option(
       "--sshlogin", "LIST",
       "Work on these machines, by GNU parallel: [N/][user@]host[:port] with commas between, ':' is this one; DIR, "
@@ -86,7 +87,7 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
   bool reports = false;
   CommandLine line("vdb_offset batch", kBatchAbout, kBatchMore, "vdb_offset batch --help");
   line.file("DIR", "Folder with models, in subfolders as well", request.folder);
-  line.file("OUT", "Folder to write to; it is made if it is not there", request.out);
+  line.file("OUT", "Folder to write to; created if it is missing", request.out);
   declare_batch(line, request, reports);
   line.add_config(options_of_distance(), {}, {"sshlogin"});
   line.hide_what_follows();

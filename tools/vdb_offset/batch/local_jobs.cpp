@@ -51,7 +51,7 @@ std::size_t first_guess(const std::string& path) {
   return unknown ? 0 : (is_packed ? kBytesPerPackedByte : kBytesPerByte) * static_cast<std::size_t>(size);
 }
 
-/// Makes the folders that the files of a run go to. What cannot be made is told by the run itself.
+/// Makes the folders that the files of a run go to. The run itself reports what cannot be made.
 void make_folders(const ModelRun& run) {
   std::error_code failed;
   for (const std::string& path : run.written) fs::create_directories(fs::path(path).parent_path(), failed);

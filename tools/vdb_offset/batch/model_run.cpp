@@ -161,12 +161,12 @@ void require_apart(const BatchRequest& request, std::span<const Model> models) {
       const auto identity = identity_of(path);
       // By whatever link it is reached.
       if ((!is_new && !other->second) || (identity && read.contains(*identity)))
-        throw UsageError(
-            fmt::format("{}: expected outputs that are no models, nor read with them, got {}", model.path, path));
+        throw UsageError(fmt::format("{}: its output {} would replace a file that the batch reads", model.path, path));
       if (identity && config.contains(*identity))
-        throw UsageError(fmt::format("{}: expected outputs beside the file of --config, got {}", model.path, path));
+        throw UsageError(fmt::format("{}: its output {} would replace the file of --config", model.path, path));
       if (path == table || path.starts_with(state))
-        throw UsageError(fmt::format("{}: expected outputs beside the table and {}, got {}", model.path, state, path));
+        throw UsageError(fmt::format("{}: its output {} would replace one of the batch's own files (the table, {})",
+                                     model.path, path, state));
       if (!is_new)
         throw UsageError(
             fmt::format("--output: expected a name of its own for each model, got {} for {} and {} (use "

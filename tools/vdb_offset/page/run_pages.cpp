@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "request/units.h"
+#include "summary/summary.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/view_file.h"
 #include "vdb_offset/report.h"
@@ -112,7 +113,9 @@ void write_page(const Request& made, const Source& source, PolygonView result, c
 
 void write_page(const Request& made, const Source& source, std::span<const Vec3d> positions, const CheckResult& result,
                 const io::ResultFaces& faces) {
-  io::Page page = page_of(made, source, check_json(result, made.input, made.output));
+  io::Page page = page_of(
+      made, source,
+      check_json(result, made.input, made.output, summary_of(made, result, source.curves.has_value()).for_report()));
   page.title = name_of(made.output);
   page.groups = faces.groups;
   io::PageSurface surface;

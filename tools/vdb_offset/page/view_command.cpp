@@ -111,7 +111,7 @@ int run_view(int argc, const char* const* argv) {
   fmt::print(Printout(), "{}\n", as_text(made.html));
   if (request->no_open) return kDone;
   if (const std::string why = open_page(made.html); !why.empty())
-    tell(fmt::format("{}: not opened ({}); open it in a browser, or set BROWSER", made.html, why));
+    report_problem(fmt::format("{}: not opened ({}); open it in a browser, or set BROWSER", made.html, why));
   return kDone;
 }
 

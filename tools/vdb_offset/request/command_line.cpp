@@ -24,7 +24,7 @@
 namespace vdb_offset::tool {
 namespace {
 
-// Options whose values are lengths.
+// Options whose values are lengths. The unit of the first of these that has one is that of what is printed.
 constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",    "inner",     "clearance",
                                     "first-height", "total-thickness", "voxel-size",    "tolerance", "weld",
                                     "flatten",      "deflection",      "fit-tolerance", "blend"};
@@ -233,8 +233,9 @@ std::vector<std::string> CommandLine::words_of(const std::vector<ConfigEntry>& e
   return words;
 }
 
-void CommandLine::add_unit(std::string& unit, const std::string& input) {
+void CommandLine::add_unit(std::string& unit, const std::string& input, Lengths& lengths) {
   unit_ = &unit;
+  lengths_ = &lengths;
   measured_ = &input;
   option("--unit", "UNIT",
          "What the numbers of the file are: 'um', 'mm', 'cm', 'm', 'in' or 'ft'; then distances and other lengths may "
@@ -264,19 +265,24 @@ std::optional<double> unit_of_file(const std::string& path, const std::string& f
 
 }  // namespace
 
-std::string CommandLine::text_of(const CLI::Option& option, const std::string& given) const {
+std::string CommandLine::text_of(const CLI::Option& option, const std::string& given) {
   const std::string& name = option.get_lnames().front();
-  const bool is_length = std::find(std::begin(kLengths), std::end(kLengths), name) != std::end(kLengths);
+  const auto number = static_cast<std::size_t>(std::find(std::begin(kLengths), std::end(kLengths), name) - kLengths);
+  const bool is_of_part = name == "distance-of";
+  if (!unit_ || (number == std::size(kLengths) && !is_of_part)) return given;
   const auto file_unit = [this] {
     if (!unit_->empty()) return micrometres_of(*unit_);
     const CLI::Option* const format = app_->get_option_no_throw("--format");
     return unit_of_file(*measured_, format && format->count() > 0 ? format->results().front() : std::string());
   };
-  if (unit_ && name == "distance-of") {
-    const std::size_t at = given.rfind(':') + 1;
-    return given.substr(0, at) + in_file_units("--" + name, given.substr(at), file_unit);
+  const std::size_t at = is_of_part ? given.rfind(':') + 1 : 0;
+  std::optional<Lengths> found;
+  std::string text = given.substr(0, at) + in_file_units("--" + name, given.substr(at), file_unit, found);
+  if (found && number < lengths_by_) {
+    *lengths_ = *found;
+    lengths_by_ = number;
   }
-  return unit_ && is_length ? in_file_units("--" + name, given, file_unit) : given;
+  return text;
 }
 
 bool CommandLine::parse(int argc, const char* const* argv) {
@@ -300,6 +306,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
     if (value.texts.empty()) value.take(text_of(*value.option, value.text));
     for (const std::string& text : value.texts) value.take(text_of(*value.option, text));
   }
+  if (unit_ && !unit_->empty() && lengths_by_ == std::string::npos) *lengths_ = Lengths(*unit_, 1);
   return true;
 }
 

@@ -62,7 +62,8 @@ class CommandLine {
                   std::vector<std::string> kept_out = {});
   /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name;
   /// where it is not given, the file `input`, which other options name, may state its own.
-  void add_unit(std::string& unit, const std::string& input);
+  /// `lengths` get the unit of the distance, or else of another length, or else of the file as far as it is given.
+  void add_unit(std::string& unit, const std::string& input, Lengths& lengths);
   /// --help lists those of `options` alone and says `more`, and which topics there are; `--help TOPIC` lists the
   /// options of a topic, and `--help all` those of all, by their topics. `options` lives as long as this.
   void arrange_help(std::span<const HelpTopic> topics, std::vector<std::string> options, std::string more);
@@ -122,7 +123,7 @@ class CommandLine {
   void require_values() const;
   void require_known_options() const;
   /// The text of an option as it is to be taken.
-  std::string text_of(const CLI::Option& option, const std::string& given) const;
+  std::string text_of(const CLI::Option& option, const std::string& given);
   /// Declares whether --help lists an option.
   void place(CLI::Option* option);
 
@@ -131,6 +132,8 @@ class CommandLine {
   std::string config_, preset_;
   std::vector<std::string> alternatives_, passed_over_, kept_out_;
   const std::string *unit_ = nullptr, *measured_ = nullptr;
+  Lengths* lengths_ = nullptr;
+  std::size_t lengths_by_ = std::string::npos;  // number of the option in kLengths that their unit is of
   std::span<const HelpTopic> topics_;
   std::vector<std::string> first_options_;
   std::string more_of_all_, more_of_first_;

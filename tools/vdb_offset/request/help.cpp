@@ -9,17 +9,16 @@ const char* const kAbout =
     "texture coordinates, groups and materials; only positions (and normals) change.";
 
 const char* const kMore = R"(
-INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, compressed with .gz or .zst
-behind it, or are '-' (standard input and output, with --format); INPUT may also be .fbx, .dae or .3ds, a CAD
-model (.step .stp .iges .igs .brep), which is tessellated, and whose offset may be one (.step .stp .brep), a level set
-(.vdb), which OUTPUT may be as well with --mode iso, or a scene (.json), which brings its distance. The same format in and out keeps all that the file holds but coordinates and normals
-of what moved. Plane curves are files that end in .dat, .txt, .xy, .svg or .dxf, or an .obj with line elements and no
-face.
-D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use;
-below zero it is inward. Write --distance=-1% or --distance -1%. Or it is an expression, which gives each vertex its
-own: in x y z (place), nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and
-functions (sin, sqrt, min ...); a % behind it makes it percent. Several distances give several outputs: NAME_001.obj,
-NAME_002.obj ..., or OUTPUT holds {i} (their number) or {d} (the distance as given).
+INPUT and OUTPUT end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk or .vtu, also with .gz or .zst behind it,
+or are '-' (standard input and output, with --format). INPUT may also be .fbx, .dae or .3ds; a CAD model (.step .stp
+.iges .igs .brep), whose offset may be one again (.step .stp .brep); a level set (.vdb, with --mode iso OUTPUT as well);
+or a scene (.json), which has its own distance. If both have the same format, only coordinates and normals of what moved
+change. Plane curves are .dat, .txt, .xy, .svg or .dxf files, or an .obj with line elements and no face.
+D is in the file's own units, or a percentage of the diagonal of the bounding box of the vertices in use; below zero it
+is inward. Write --distance=-1% or --distance -1%. Or it is an expression, evaluated for each vertex, in x y z (place),
+nx ny nz (normal) and u v (texture coordinates), with numbers, pi, e, + - * / ^, ?: and functions (sin, sqrt, min ...);
+a % behind it makes it percent. Several distances give several outputs: NAME_001.obj, NAME_002.obj ..., or OUTPUT has
+{i} (their number) or {d} (the distance as given).
 
 Examples:
   vdb_offset bunny.obj bigger.obj --distance 1%         enlarge by 1 % of the diagonal
@@ -34,15 +33,15 @@ Examples:
   vdb_offset part.stl out.stl --distance-xy -0.1 --distance-z -0.05      less across than up
   vdb_offset peg.stl out.stl --fit socket.stl --clearance 0.1           makes room where there is less
   vdb_offset part.obj out.obj --distance 1% --tolerance 2%     faces at the distance, too, to 2 % of it
-  vdb_offset scan.obj clean.obj --distance 1% --mode iso       a clean surface of its own, textures and all
+  vdb_offset scan.obj clean.obj --distance 1% --mode iso       a new, clean surface, with textures
   vdb_offset scenes/torus.json torus.obj                a procedural scene
   vdb_offset check bunny.obj bigger.obj                 measure an offset (vdb_offset check --help)
   vdb_offset view bunny.obj bigger.obj                  look at it in a browser (vdb_offset view --help)
   vdb_offset batch models bigger --distance 1%          a folder of models (vdb_offset batch --help)
 
 Exit codes: 0 done, 1 usage, 2 input, 3 processing (or --strict and a vertex short, or a scene's expectation not
-met, or more than --max-faces needed), 4 output. Ctrl-C and the like end the process at once, by that signal, and every output is as it was before;
-once they are put in place, all together, a signal changes nothing more.
+met, or more than --max-faces needed), 4 output. Ctrl-C and similar signals end the run at once, and every output stays
+as it was before.
 Report keys, library and guarantees: see the guides in docs/.)";
 
 const char* const kMoreOfFirst = R"(
@@ -54,7 +53,7 @@ Examples:
   vdb_offset bunny.obj bigger.obj --distance 1%          enlarge by 1 % of the diagonal
   vdb_offset part.stl bigger.stl -d 0.2 --preset part    enlarge a printed part by 0.2 units, certified
   vdb_offset vase.stl shell.stl -d -2 --shell            a closed solid, 2 units thick
-  vdb_offset scan.obj clean.obj -d 1% --mode iso         a clean surface of its own
+  vdb_offset scan.obj clean.obj -d 1% --mode iso         a new, clean surface
   vdb_offset check bunny.obj bigger.obj                  measure an offset (vdb_offset check --help)
   vdb_offset view bunny.obj bigger.obj                   look at it (vdb_offset view --help)
   vdb_offset batch models bigger -d 1%                   a folder of models (vdb_offset batch --help))";

@@ -29,7 +29,7 @@ constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
 /// Declares the options that say how far the offset goes, and what kind of offset it is.
 void declare_distances(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
-  line.add_unit(request.unit, request.input);
+  line.add_unit(request.unit, request.input, request.lengths);
   line.repeated(
       "-d,--distance", "D",
       "Distance: world units, percent of the diagonal as in 1.5%, or an expression; negative is inward; given "
@@ -46,33 +46,34 @@ void declare_distances(CommandLine& line, Draft& draft) {
               });
   line.option(
       "--corners", "KIND",
-      "At sharp corners 'miter' puts faces at the distance, and vertices on sharp edges are farther; 'round' puts "
-      "vertices at the distance, and faces around sharp edges are nearer [miter; with --layers round]",
+      "At sharp corners, 'miter' puts faces at the distance (vertices on sharp edges are farther), 'round' puts "
+      "vertices at the distance (faces at sharp edges are nearer) [miter; with --layers round]",
       request.corners, parse_corners);
   line.option("--miter-limit", "L", "A vertex on a sharp edge goes no farther than this many distances, at least 1 [4]",
               request.miter_limit, parse_miter_limit);
   line.option(
       "--adaptivity", "X",
-      "With --mode iso: how readily cells are merged where the surface is nearly flat, 0 (none) to 1 [triangles are "
-      "merged where that changes nothing: where it is flat and nothing comes along]",
+      "With --mode iso: how readily cells are merged where the surface is nearly flat, 0 (none) to 1 [only where that "
+      "changes nothing: in flat parts, if no attribute is transported]",
       draft.iso.adaptivity, number_between("--adaptivity", "a number from 0 to 1", kBelowZero, 1));
-  line.option("--inside", "MODE",
-              "With --mode iso: 'winding' decides what is inside of a mesh that is closed but for small holes, or has "
-              "edges of four faces and more; 'never' takes such a mesh as open, with a surface on all its sides "
-              "[winding]",
-              draft.iso.use_winding, [](const std::string& text) {
-                return parse_word("--inside", text, {"winding", "never"}) == 0;
-              });
-  line.flag("--keep-specks", "With --mode iso: keep pieces that enclose less than a voxel, as knife edges leave them",
+  line.option(
+      "--inside", "MODE",
+      "With --mode iso, of meshes with small holes or edges of four and more faces: 'winding' finds their inside, "
+      "'never' treats them as open, with a surface on all sides [winding]",
+      draft.iso.use_winding, [](const std::string& text) {
+        return parse_word("--inside", text, {"winding", "never"}) == 0;
+      });
+  line.flag("--keep-specks",
+            "With --mode iso: keep pieces that enclose less than a voxel, such as remains of knife edges",
             draft.iso.keep_specks);
   line.option("--transport", "LIST",
-              "With --mode iso: what comes along from INPUT, of 'uv', 'color' and 'material', separated by commas, or "
+              "With --mode iso: attributes to transport from INPUT: 'uv', 'color', 'material', separated by commas, or "
               "'none' [all that INPUT has and OUTPUT can hold]",
               draft.iso.transport, parse_transport, draft.iso.transport_text);
   line.option("--distance-from", "FILE",
               "Each vertex's distance, world units: a file of numbers (text or .npy), 'ply:NAME', a vertex "
-              "property of INPUT, or 'vtk:NAME', an array of its points; elsewhere '@FILE', 'ply:NAME' and 'vtk:NAME' "
-              "say the same",
+              "property of INPUT, or 'vtk:NAME', a point array of INPUT; other options take these as '@FILE', "
+              "'ply:NAME' and 'vtk:NAME'",
               [&request](const std::string& text) {
                 request.distances.push_back(parse_distance_from(text, request));
                 request.distance_option = "--distance-from";
@@ -88,24 +89,23 @@ void declare_distances(CommandLine& line, Draft& draft) {
 void declare_tolerance(CommandLine& line, Draft& draft) {
   ToleranceRequest& request = draft.tolerance;
   line.option("--tolerance", "T",
-              "Split faces until every point of them is proven to be within T of the distance, wherever vertices get "
-              "there: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
-              "are in its place",
+              "Split faces until every point of them is proven to be within T of the distance, wherever vertices reach "
+              "it: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
+              "take its place",
               request.tolerance, parse_tolerance, request.text);
   line.option("--max-faces", "N",
               "With --tolerance: make no more faces than this [20 times as many as INPUT has, at least a million]",
               request.tolerance.most_faces, count_between("--max-faces", 1, std::numeric_limits<int>::max()));
   line.option("--refined-source", "FILE", "With --tolerance: write INPUT with the faces that OUTPUT has",
               request.refined_source);
-  line.option("--map", "FILE", "With --tolerance: write where in INPUT each vertex lies that was added, as text",
-              request.map);
+  line.option("--map", "FILE", "With --tolerance: write where in INPUT each added vertex lies, as text", request.map);
 }
 
 /// Declares the options that say which faces move, and what is around them.
 void declare_parts(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.repeated("--only", "PART",
-                "Offset this part alone; the rest stays and is in the way: 'group=NAME', 'material=NAME', "
+                "Offset only this part; the rest stays, as an obstacle: 'group=NAME', 'material=NAME', "
                 "'faces=FILE' (indices from 0, or a 0 or 1 for each face), 'holes' (round ones; 'holes<8' or 'holes>8' "
                 "by diameter), 'concave', 'convex', 'up', 'down', or of a CAD model 'face=N' (from 1), 'name=NAME' or "
                 "'color=RRGGBB'; 'not:PART' is all but that; may be repeated",
@@ -114,13 +114,12 @@ void declare_parts(CommandLine& line, Draft& draft) {
                   request.only.push_back(parse_part("--only", text));
                 });
   line.option("--border", "MODE",
-              "What the edge of that part does: 'slide' along the surface that stays, 'fixed' or 'free' [slide]",
-              request.border, parse_border);
-  line.repeated(
-      "--symmetry", "PLANE",
-      "A plane that what lies on it stays in: 'x=0', 'y=1.5', 'z=-2', or 'A,B,C,D' for A x + B y + C z = D; may "
-      "be repeated; 'none' also switches off the automatic planes of borders",
-      [&request](const std::string& text) { take_plane(text, request); });
+              "The edge of that part: 'slide' along the surface that stays, 'fixed' or 'free' [slide]", request.border,
+              parse_border);
+  line.repeated("--symmetry", "PLANE",
+                "Keep what lies on this plane in it: 'x=0', 'y=1.5', 'z=-2', or 'A,B,C,D' for A x + B y + C z = D; may "
+                "be repeated; 'none' also switches off the automatic planes of borders",
+                [&request](const std::string& text) { take_plane(text, request); });
   line.repeated("--obstacle", "FILE",
                 "A mesh that the offset must not touch; distances are not measured from it; may be repeated",
                 [&request](const std::string& text) { request.obstacles.push_back(text); });
@@ -128,8 +127,8 @@ void declare_parts(CommandLine& line, Draft& draft) {
               "Come no nearer to obstacles than this: world units, or percent of INPUT's diagonal [0]",
               request.clearance, parse_clearance, request.clearance_text);
   line.option("--fit", "FILE",
-              "Instead of --distance, with --clearance: what is nearer to this mesh gives way, inward, until it is "
-              "that far from it; all else stays",
+              "Instead of --distance, with --clearance: what is nearer to this mesh moves inward until it is that far "
+              "away; all else stays",
               request.fit);
 }
 
@@ -141,7 +140,7 @@ void declare_products(CommandLine& line, Draft& draft) {
             "--mode iso: a hollow solid, the source's own faces and one clean cavity, or skin",
             request.shell);
   line.option("--inner", "E",
-              "With --shell: the inner skin lies this far inward, not on the source; with --mode iso both are clean",
+              "With --shell: put the inner skin this far inward, not on the source; with --mode iso both skins are new",
               [&request](const std::string& text) { request.inner = parse_inner(text, request); });
   line.option("--layers", "N",
               "Grow N layers of cells: with --first-height or --total-thickness, and --growth; OUTPUT is .vtu, .msh, "
@@ -153,9 +152,9 @@ void declare_products(CommandLine& line, Draft& draft) {
   line.option("--total-thickness", "T", "Height of all layers together, as --distance", [&](const std::string& text) {
     draft.layers.total = parse_distance_of("--total-thickness", text, request);
   });
-  line.option("--growth", "R", "Each layer's height by that of the one below [1.2]", draft.layers.growth,
+  line.option("--growth", "R", "Ratio of each layer's height to that of the layer below [1.2]", draft.layers.growth,
               number_between("--growth", "a number above 0, up to 10", 0, 10));
-  line.option("--heights", "FILE", "A file of heights above the wall, one a line, each as --distance",
+  line.option("--heights", "FILE", "A file of heights above the wall, one in each line, each as --distance",
               draft.layers.heights);
   line.flag("--structured",
             "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
@@ -179,16 +178,17 @@ void take_plane(const std::string& text, Request& request) {
 void declare_part_distances(CommandLine& line, Request& request) {
   line.repeated(
       "--distance-of", "PART:D",
-      "A different distance for one part: PART as for --only, as in face=3:0.4; may be repeated, the last that "
-      "names a face counts",
+      "A different distance for one part: PART as for --only, as in face=3:0.4; may be repeated, the last for a "
+      "face counts",
       [&request](const std::string& text) {
         request.distance_of_texts.push_back(text);
         request.distances_of.push_back(parse_distance_of_part(text, request));
       });
-  line.option("--blend", "L",
-              "With --distance-of, or a CAD model and distances in u and v: distances of parts change into each other "
-              "over this length on both sides of their edges: world units, or percent of the diagonal [off]",
-              request.blend, parse_blend, request.blend_text);
+  line.option(
+      "--blend", "L",
+      "With --distance-of, or distances in u and v on a CAD model: blend the distances of parts over this length "
+      "on both sides of their edges: world units, or percent of the diagonal [off]",
+      request.blend, parse_blend, request.blend_text);
 }
 
 void complete_part_distances(Request& request) {
@@ -238,9 +238,9 @@ void declare_method(CommandLine& line, Draft& draft) {
               request.grid.voxels_per_distance, number_between("--voxels-per-distance", "a number above 0", 0, kAny));
   line.option(
       "--collision", "MODE",
-      "Where faces would fold or cross: 'limit' holds vertices back so that none does, 'merge' lets them go as "
-      "far as the distance grows; of an OUTPUT that is a CAD model, 'limit' holds faces back where fronts meet, "
-      "and 'cut' cuts them where they cross [limit; of a CAD model cut, or limit with --obstacle]",
+      "Where faces would fold or cross: 'limit' holds vertices back to prevent it, 'merge' lets them go as far as "
+      "the distance grows; for a CAD model as OUTPUT, 'limit' holds faces back where fronts meet, and 'cut' cuts "
+      "them where they cross [limit; for a CAD model cut, or limit with --obstacle]",
       [&request](const std::string& text) {
         const std::size_t word = parse_word("--collision", text, {"limit", "merge", "cut"});
         request.cuts = word == 2;
@@ -256,11 +256,12 @@ void declare_method(CommandLine& line, Draft& draft) {
       "Vertices that move as one: 'auto' (equal positions, and borders that are one but for the file's rounding), "
       "'exact' (equal positions), 'none', or within TOL world units [auto]",
       request.weld, parse_weld, request.weld_text);
-  line.option("--orient", "MODE",
-              "Outward is where the faces point ('keep'), or out of what a closed component encloses even where it "
-              "is inside out ('fix-direction-only'; the faces stay as they are), also where it is a cavity whose faces "
-              "point outward ('fix-cavities') [keep]",
-              request.orient, parse_orient, request.orient_text);
+  line.option(
+      "--orient", "MODE",
+      "Outward is where the faces point ('keep'), or out of what a closed piece encloses even if it is inside "
+      "out ('fix-direction-only'; the faces stay as they are), also if it is a cavity whose faces point outward "
+      "('fix-cavities') [keep]",
+      request.orient, parse_orient, request.orient_text);
 }
 
 /// Declares the options for the files that are written, and for threads and memory.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "request/units.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -113,6 +114,7 @@ struct Request {
   std::optional<GivenDistance> flatten;     ///< How far straight segments may be from curved ones; none: the default.
 
   std::string unit;  ///< Of the file's numbers; empty: not said.
+  Lengths lengths;   ///< What is printed of lengths.
   // Texts as given, for the report.
   std::vector<std::string> only_texts, symmetry_texts, distance_of_texts;
   std::string blend_text;

@@ -31,8 +31,19 @@ std::string name_of_unit(double micrometres) {
   return fmt::format("x {:.6g} mm", micrometres / *micrometres_of("mm"));
 }
 
+std::string Lengths::operator()(double length, int digits) const {
+  return fmt::format("{:.{}g}{}{}", in_unit(length), digits, have_unit() ? " " : "", unit_);
+}
+
+std::string Lengths::value(double length_in_unit) const { return fmt::format("{:g}{}", length_in_unit, unit_); }
+
+std::string Lengths::volume(double volume) const {
+  return fmt::format("{:.6g}{}", volume * of_file_unit_ * of_file_unit_ * of_file_unit_,
+                     have_unit() ? fmt::format(" {}³", unit_) : "");
+}
+
 std::string in_file_units(const std::string& option, const std::string& text,
-                          const std::function<std::optional<double>()>& file_unit) {
+                          const std::function<std::optional<double>()>& file_unit, std::optional<Lengths>& found) {
   // The longest name counts: 0.2mm is no number of metres with an m behind it.
   const std::size_t letters = text.find_last_not_of("umcintf") + 1;
   const std::optional<double> given = micrometres_of(text.substr(letters));
@@ -44,6 +55,7 @@ std::string in_file_units(const std::string& option, const std::string& text,
   require(of_file.has_value(),
           fmt::format("{}: '{}': the file does not state its unit; add --unit mm if its numbers are millimetres",
                       option, text));
+  found = Lengths(text.substr(letters), *of_file / *given);
   return *given == *of_file ? number : fmt::format("{}", *value * *given / *of_file);
 }
 

@@ -89,9 +89,9 @@ std::size_t faces_in(const MeshFacts& facts) {
   return faces;
 }
 
-std::string certified_in_words(const CertifiedFaces& certified) {
+std::string certified_in_words(const CertifiedFaces& certified, const Lengths& lengths) {
   const std::string within =
-      certified.share > 0 ? fmt::format("{:.6g} %", 100 * certified.share) : fmt::format("{:.6g}", certified.length);
+      certified.share > 0 ? fmt::format("{:.6g} %", 100 * certified.share) : lengths(certified.length);
   return fmt::format("{} % of the area is certified within {} of the distance at every point",
                      area_percent(certified.certified, 2), within);
 }
@@ -110,14 +110,16 @@ void add_certified(const CertifiedFaces& certified, std::size_t faces, Remarks& 
     remarks.add(Gravity::Detail, fmt::format("the worst of all faces is up to {:.3g} % off", 100 * certified.worst));
 }
 
-bool is_certified(const CertifiedFaces& certified, std::optional<double> asked, const std::string& offset) {
+bool is_certified(const CertifiedFaces& certified, std::optional<double> asked, const std::string& offset,
+                  const Lengths& lengths) {
   if (certified.out_of_faces)
-    tell(
+    report_problem(
         fmt::format("--max-faces: {}: expected more faces, as those whose vertices are at the distance are up to "
                     "{:.3g} % off",
                     offset, 100 * certified.worst_left));
   else if (asked && certified.certified < *asked)
-    tell(fmt::format("{}: {}: expected {:g} %", offset, certified_in_words(certified), 100 * *asked));
+    report_problem(
+        fmt::format("{}: {}: expected {:g} %", offset, certified_in_words(certified, lengths), 100 * *asked));
   else return true;
   return false;
 }
@@ -141,8 +143,10 @@ void add_faces(const Job& job, const OffsetStatistics& statistics, Remarks& rema
                             100 * faces.farther));
   const bool curves = job.curves();
   std::vector<std::pair<double, std::string>> causes{
-      {faces.held_back, fmt::format("is at {} that fall short. Use a smaller distance, which has more room",
-                                    curves ? "points" : "vertices")},
+      // Where there is room on the other side, another remark says so.
+      {statistics.room.suggests_other() ? 0 : faces.held_back,
+       fmt::format("is at {} that fall short. Use a smaller distance, which has more room",
+                   curves ? "points" : "vertices")},
       {faces.stuck, fmt::format("is at {} that have no room at any distance", curves ? "points" : "vertices")},
       {faces.no_room, "is in walls or gaps narrower than two distances. Use a smaller distance"},
       {faces.corners, corners_in_words(job, statistics)},
@@ -156,8 +160,8 @@ void add_faces(const Job& job, const OffsetStatistics& statistics, Remarks& rema
 
 bool are_within(const FaceError& faces, double bound, const std::string& offset) {
   if (100 * faces.quantile_99 <= bound) return true;
-  tell(fmt::format("--strict-faces: {}: 99 % of it is within {:.3g} % of the distance, expected {:g} %", offset,
-                   100 * faces.quantile_99, bound));
+  report_problem(fmt::format("--strict-faces: {}: 99 % of it is within {:.3g} % of the distance, expected {:g} %",
+                             offset, 100 * faces.quantile_99, bound));
   return false;
 }
 

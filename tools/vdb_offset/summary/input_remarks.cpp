@@ -10,6 +10,8 @@
 
 #include "messages.h"
 #include "summary/summary.h"
+#include "vdb_offset/io/mesh_file.h"
+#include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset::tool {
@@ -26,14 +28,18 @@ std::string text_of(const SymmetryPlane& plane) {
   return fmt::format("{} = {:.6g}", text, plane.offset);
 }
 
-void add_slivers(const MeshFacts& facts, Remarks& remarks) {
+/// A value of --weld that joins what is so far apart.
+std::string weld_value(const Lengths& lengths, double length) {
+  return lengths.value(MeshFacts::tolerance_above(lengths.in_unit(length)));
+}
+
+void add_slivers(const MeshFacts& facts, const Lengths& lengths, Remarks& remarks) {
   if (facts.sliver_edges > 0)
-    remarks.add(
-        Gravity::Off,
-        fmt::format("{} edges are no longer than {:.2g}, where the median is {:.2g}; such slivers hold back the "
-                    "vertices around them. To close them: --weld {:g}",
-                    facts.sliver_edges, facts.longest_sliver, facts.median_edge,
-                    MeshFacts::tolerance_above(facts.longest_sliver)));
+    remarks.add(Gravity::Off,
+                fmt::format("{} edges are no longer than {}, where the median is {}; such slivers hold back the "
+                            "vertices around them. To close them: --weld {}",
+                            facts.sliver_edges, lengths(facts.longest_sliver, 2), lengths(facts.median_edge, 2),
+                            weld_value(lengths, facts.longest_sliver)));
 }
 
 /// The plane as --symmetry takes it.
@@ -45,7 +51,7 @@ std::string as_option(const SymmetryPlane& plane) {
 
 /// Which planes borders stay in without having been asked to, and where borders of the offset are not as one would
 /// expect from the input.
-void add_borders(const BorderFacts& borders, Remarks& remarks) {
+void add_borders(const BorderFacts& borders, const Lengths& lengths, Remarks& remarks) {
   if (borders.planes.size() > borders.named_planes)
     remarks.add(Gravity::Detail, fmt::format("borders stay in the plane they lie in: {} (--symmetry none: do not)",
                                              planes_in_words(std::span(borders.planes).subspan(borders.named_planes))));
@@ -67,13 +73,15 @@ void add_borders(const BorderFacts& borders, Remarks& remarks) {
     farthest = std::max(farthest, each.farthest);
   }
   remarks.add(Gravity::Off,
-              fmt::format("borders in {} leave that plane by up to {:.3g}, because their faces rise from it by less "
+              fmt::format("borders in {} leave that plane by up to {}, because their faces rise from it by less "
                           "than 12 degrees. To keep them there: --symmetry {}",
-                          planes_in_words(left), farthest, as_option(left.front())));
+                          planes_in_words(left), lengths(farthest, 3), as_option(left.front())));
 }
 
 /// A distance as it was given, with the other sign.
-std::string turned_round(const std::string& text) {
+std::string turned_round(const std::string& text, const Lengths& lengths) {
+  if (const auto number = decimal<double>(text); number && lengths.have_unit())
+    return lengths.value(-lengths.in_unit(*number));
   if (text.starts_with('-') && text.find_first_of("+*/^( ", 1) == std::string::npos) return text.substr(1);
   const bool number = text.find_first_not_of("0123456789.eE%") == std::string::npos;
   return number ? "-" + text : fmt::format("'-({})'", text);
@@ -86,19 +94,18 @@ std::string option_for_other_side(const Job& job) {
                                        : layers->first ? &*layers->first
                                        : layers->total ? &*layers->total
                                                        : nullptr;
-  if (!asked) return "heights below 0";
-  if (!asked->from.empty()) return "distances of the other sign";
+  if (!asked) return "use heights below 0";
+  if (!asked->from.empty()) return "use distances of the other sign";
   const char* const option = !layers ? "--distance" : layers->first ? "--first-height" : "--total-thickness";
-  return fmt::format("{} {}", option, turned_round(asked->text));
+  return fmt::format("{} {}", option, turned_round(asked->text, job.request.lengths));
 }
 
-void add_made_straight(const Source& source, Remarks& remarks) {
+void add_made_straight(const Source& source, const Lengths& lengths, Remarks& remarks) {
   if (const std::size_t flattened = source.curves->flattened_shapes; flattened > 0)
-    remarks.add(Gravity::Detail,
-                fmt::format("{} curved shape{} became straight segments, at most {:.3g} off (--flatten)", flattened,
-                            plural(flattened), source.curves->flattened_to));
+    remarks.add(Gravity::Detail, fmt::format("{} curved shape{} became straight segments, at most {} off (--flatten)",
+                                             flattened, plural(flattened), lengths(source.curves->flattened_to, 3)));
   for (const OpenCurve& closed : source.closed)
-    remarks.add(Gravity::Detail, fmt::format("a gap of {:.6g} between a curve's ends was closed", closed.gap));
+    remarks.add(Gravity::Detail, fmt::format("a gap of {} between a curve's ends was closed", lengths(closed.gap)));
 }
 
 /// Whether coordinates are kept to the last bit of a double.
@@ -132,13 +139,33 @@ void add_source_crossings(const Job& job, const OffsetStatistics& statistics, Re
 }
 
 /// Where the file's coordinates are too coarse for distances to be met to a hundredth, as faces are judged.
-void add_rounding(double rounding, double distance, Remarks& remarks) {
+void add_rounding(double rounding, double distance, const Lengths& lengths, Remarks& remarks) {
   constexpr double kWorthSaying = 0.01;
-  if (rounding <= kWorthSaying * distance) return;
+  if (distance == 0 || rounding <= kWorthSaying * distance) return;
   remarks.add(Gravity::Wrong,
-              fmt::format("coordinates this large are rounded by {:.2g}, {:.0f} % of the distance. Move the model to "
+              fmt::format("coordinates this large are rounded by {}, {:.0f} % of the distance. Move the model to "
                           "the origin, or write a format with more digits (.obj, .ply)",
-                          rounding, 100 * rounding / distance));
+                          lengths(rounding, 2), 100 * rounding / distance));
+}
+
+/// Which pieces are inside out: the largest of them by where it is, how large, and its group or object.
+std::string inside_out_in_words(const Job& job, const MeshFacts& facts) {
+  const PieceFacts& piece = facts.largest_inside_out;
+  const Vec3d middle = (piece.lower + piece.upper) / 2.0;
+  std::string group;
+  if (job.source.file) {
+    const WallNames names = io::wall_names(*job.source.file);
+    if (piece.face < names.of_face.size()) group = fmt::format(" of '{}'", names.names[names.of_face[piece.face]]);
+  }
+  const std::string which =
+      fmt::format("{} vertices{}, {} across, around {:.4g} {:.4g} {:.4g}", piece.vertices, group,
+                  job.request.lengths((piece.upper - piece.lower).length(), 3), middle[0], middle[1], middle[2]);
+  if (facts.components == 1) return "the mesh is inside out";
+  if (facts.closed_components == 1) return fmt::format("the only closed piece ({}) is inside out", which);
+  if (facts.inside_out_components == 1)
+    return fmt::format("one of {} closed pieces ({}) is inside out", facts.closed_components, which);
+  return fmt::format("{} of {} closed pieces are inside out (the largest: {})", facts.inside_out_components,
+                     facts.closed_components, which);
 }
 
 }  // namespace
@@ -151,17 +178,16 @@ std::string planes_in_words(std::span<const SymmetryPlane> planes) {
                      planes.size() > kMostNamed ? fmt::format(" and {} more", planes.size() - kMostNamed) : "");
 }
 
-void add_orientation(const MeshFacts& facts, Orient orient, Remarks& remarks) {
-  const bool is_one = facts.closed_components == 1;
-  const std::string pieces = is_one ? "the only closed piece is inside out"
-                                    : fmt::format("{} of {} closed pieces are inside out", facts.inside_out_components,
-                                                  facts.closed_components);
-  if (facts.inside_out_components > 0 && orient == Orient::Keep)
-    remarks.add(Gravity::Wrong, fmt::format("{0}: positive distances shrink {1}. To enlarge {1}: --orient "
-                                            "fix-direction-only",
-                                            pieces, is_one ? "it" : "them"));
-  else if (facts.inside_out_components > 0)
-    remarks.add(Gravity::Detail, pieces + ": treated as flipped; the faces stay as they are");
+void add_orientation(const Job& job, const MeshFacts& facts, Remarks& remarks) {
+  if (facts.inside_out_components > 0) {
+    const bool is_one = facts.inside_out_components == 1;
+    const std::string pieces = inside_out_in_words(job, facts);
+    if (job.options.orient == Orient::Keep)
+      remarks.add(Gravity::Wrong, fmt::format("{0}: positive distances shrink {1}. To enlarge {1}: --orient "
+                                              "fix-direction-only",
+                                              pieces, is_one ? "it" : "them"));
+    else remarks.add(Gravity::Detail, pieces + ": treated as flipped; the faces stay as they are");
+  }
   if (facts.enclosed_components > 0)
     remarks.add(Gravity::Wrong,
                 fmt::format("{} of {} closed pieces lie inside another and point outward: positive distances enlarge "
@@ -175,29 +201,30 @@ void add_orientation(const MeshFacts& facts, Orient orient, Remarks& remarks) {
                                                           : "none left"));
 }
 
-void add_seams(const SeamFacts& seams, double distance, Remarks& remarks) {
+void add_seams(const SeamFacts& seams, double distance, const Lengths& lengths, Remarks& remarks) {
   if (seams.vertices > 0)
     remarks.add(Gravity::Detail,
-                fmt::format("{} boundary vertices were welded to others at most {:.2g} away, which is rounding "
+                fmt::format("{} boundary vertices were welded to others at most {} away, which is rounding "
                             "(--weld exact: do not)",
-                            seams.vertices, seams.widest));
+                            seams.vertices, lengths(seams.widest, 2)));
   if (seams.hanging > 0)
     remarks.add(Gravity::Detail,
-                fmt::format("{} T-junction vertices were attached to the edge they lie on, at most {:.2g} away "
+                fmt::format("{} T-junction vertices were attached to the edge they lie on, at most {} away "
                             "(--weld exact: do not)",
-                            seams.hanging, seams.widest_hanging));
+                            seams.hanging, lengths(seams.widest_hanging, 2)));
   if (seams.slivers > 0)
     remarks.add(Gravity::Detail,
-                fmt::format("{} vertices at ends of edges no longer than {:.2g} were welded, as single precision could "
+                fmt::format("{} vertices at ends of edges no longer than {} were welded, as single precision could "
                             "not hold these (--weld exact: do not)",
-                            seams.slivers, seams.widest_sliver));
+                            seams.slivers, lengths(seams.widest_sliver, 2)));
   constexpr double kFarBelow =
       0.1;  // share of the distance: borders nearer to each other hold the offset back; not measured
   if (seams.near_vertices > 0 && seams.widest_near < kFarBelow * distance)
-    remarks.add(Gravity::Input,
-                fmt::format("{} boundary vertices face another boundary at most {:.2g} away. If that gap is "
-                            "unintended: --weld {:g}",
-                            seams.near_vertices, seams.widest_near, MeshFacts::tolerance_above(seams.widest_near)));
+    remarks.add(
+        Gravity::Input,
+        fmt::format("{} boundary vertices face another boundary at most {} away. If that gap is "
+                    "unintended: --weld {}",
+                    seams.near_vertices, lengths(seams.widest_near, 2), weld_value(lengths, seams.widest_near)));
 }
 
 std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
@@ -207,9 +234,10 @@ std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
   std::erase_if(open, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
   if (!open.empty())
     hints.push_back(
-        fmt::format("{} open curve{} with ends that nearly meet ({:.6g} apart, length {:.6g}). To join the "
+        fmt::format("{} open curve{} with ends that nearly meet ({} apart, length {}). To join the "
                     "ends: --close",
-                    open.size(), plural(open.size()), open.front().gap, open.front().length));
+                    open.size(), plural(open.size()), job.request.lengths(open.front().gap),
+                    job.request.lengths(open.front().length)));
   if (room.suggests_other())
     hints.push_back(
         fmt::format("only {:.0f} % of the {} has room on this side, {:.0f} % on the other. If {} the wrong "
@@ -220,16 +248,17 @@ std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
 }
 
 void add_input(const Job& job, const OffsetStatistics& statistics, const Distances& distances, Remarks& remarks) {
+  const Lengths& lengths = job.request.lengths;
   const double farthest = std::abs(distances.farthest());
-  add_rounding(statistics.rounding, farthest, remarks);
+  add_rounding(statistics.rounding, farthest, lengths, remarks);
   for (std::string& hint : side_hints(job, statistics.room)) remarks.add(Gravity::Wrong, std::move(hint));
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
-  if (in(VertexState::Limited) + in(VertexState::Collision) > 0) add_slivers(statistics.facts, remarks);
-  if (job.curves()) add_made_straight(job.source, remarks);
-  else add_orientation(statistics.facts, job.options.orient, remarks);
-  add_borders(statistics.borders, remarks);
+  if (in(VertexState::Limited) + in(VertexState::Collision) > 0) add_slivers(statistics.facts, lengths, remarks);
+  if (job.curves()) add_made_straight(job.source, lengths, remarks);
+  else add_orientation(job, statistics.facts, remarks);
+  add_borders(statistics.borders, lengths, remarks);
   add_source_crossings(job, statistics, remarks);
-  add_seams(statistics.facts.seams, farthest, remarks);
+  add_seams(statistics.facts.seams, farthest, lengths, remarks);
   if (statistics.disagreeing_distances > 0)
     remarks.add(Gravity::Input,
                 fmt::format("{} {} share a position with one that was given a different distance; the mean was used",

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/report.h"
+
 namespace vdb_offset::tool {
 
 /// How much a remark matters to somebody who is about to use the result.
@@ -22,13 +24,26 @@ class Remarks {
   void add(Gravity gravity, std::string text) { all_.push_back({gravity, std::move(text)}); }
   /// Prints the three gravest, each on a line, and how many more there are; or all of them.
   void print(std::FILE* out, bool all) const;
+  /// All of them, as a report has them.
+  RunSummary with_verdict(std::string verdict) const;
 
  private:
   struct Remark {
     Gravity gravity;
     std::string text;
   };
+  std::vector<Remark> sorted() const;
   std::vector<Remark> all_;
+};
+
+/// What a run says of one result.
+struct Summary {
+  std::string verdict;  ///< One line, without its end.
+  Remarks remarks;
+
+  RunSummary for_report() const { return remarks.with_verdict(verdict); }
+  /// Prints the verdict with the time that it took, and remarks as these do.
+  void print(std::FILE* out, double seconds, bool all) const;
 };
 
 }  // namespace vdb_offset::tool

@@ -67,8 +67,10 @@ void require_memory(std::size_t bytes, const std::string& where) {
   if (fits_memory(bytes)) return;
   const std::size_t limit = most, held = held_memory();
   const auto mib = [](std::size_t size) { return static_cast<double>(size) / 1048576.0; };
-  throw OutOfBudget(fmt::format("{}: expected to fit into {:.0f} MiB (--max-memory), got {:.0f} MiB beside {:.0f} MiB",
-                                where, mib(limit), mib(bytes), mib(held)));
+  throw OutOfBudget(
+      fmt::format("{}: needs {:.0f} MiB in addition to the {:.0f} MiB in use, more than --max-memory allows "
+                  "({:.0f} MiB)",
+                  where, mib(bytes), mib(held), mib(limit)));
 }
 
 void reserve_memory(const ReserveCallback& callback, std::size_t bytes) {

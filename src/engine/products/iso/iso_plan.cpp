@@ -127,11 +127,10 @@ IsoPlan plan_voxels(const Surface& surface, const IsoOptions& options, bool is_s
   if (fits_budget(plan, options, surface.facts)) return plan;
   const bool is_finest = options.off_source && !grid.voxel_size && !grid.voxels_per_distance;
   throw OutOfBudget(fmt::format(
-      "iso-surface: expected a surface that fits into {:.0f} MiB (--max-memory) and 524288 voxels across, got "
-      "about {:.0f} MiB in {} leaf "
-      "nodes with voxel size {:.6g} ({})",
+      "iso-surface: needs about {:.0f} MiB with voxel size {:.6g}, more than --max-memory allows ({:.0f} MiB), or more "
+      "than 524288 voxels across ({})",
+      static_cast<double>(plan.bytes) / 1048576.0, plan.voxel_size,
       options.max_memory ? static_cast<double>(options.max_memory) / 1048576.0 : 0x1p42,
-      static_cast<double>(plan.bytes) / 1048576.0, plan.leaf_nodes, plan.voxel_size,
       is_finest ? "half the distance, so that skins do not meet: thicker walls need less, and so does a "
                   "larger --voxel-size, with which they may meet"
                 : "a larger voxel size needs less"));

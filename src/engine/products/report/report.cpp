@@ -27,6 +27,16 @@ std::size_t faces_in(const MeshFacts& facts) {
   return faces;
 }
 
+/// The largest piece that is inside out; null if there is none.
+Json piece_json(const MeshFacts& facts) {
+  if (facts.inside_out_components == 0) return nullptr;
+  const auto& [vertices, lower, upper, face] = facts.largest_inside_out;
+  return {{"vertices", vertices},
+          {"lower", {lower[0], lower[1], lower[2]}},
+          {"upper", {upper[0], upper[1], upper[2]}},
+          {"face", face}};
+}
+
 Json facts_json(const MeshFacts& facts) {
   Json by_corners = Json::object();
   for (const auto& [corners, count] : facts.faces_by_corners) by_corners[std::to_string(corners)] = count;
@@ -38,6 +48,7 @@ Json facts_json(const MeshFacts& facts) {
           {"components", facts.components},
           {"closed_components", facts.closed_components},
           {"inside_out_components", facts.inside_out_components},
+          {"largest_inside_out", piece_json(facts)},
           {"enclosed_components", facts.enclosed_components},
           {"boundary_edges", facts.boundary_edges},
           {"non_manifold_edges", facts.non_manifold_edges},
@@ -70,6 +81,16 @@ Json facts_json(const MeshFacts& facts) {
 
 /// A report as text; bytes of names that are no UTF-8, and so not allowed in JSON, are replaced.
 std::string as_text(const Json& report) { return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+/// Puts the verdict, the warnings and the notes of a run into its report.
+void add_summary(Json& report, const RunSummary& summary) {
+  if (summary.verdict.empty()) return;
+  report["verdict"] = summary.verdict;
+  Json warnings = Json::array();
+  for (const auto& [kind, text] : summary.warnings) warnings.push_back({{"kind", kind}, {"text", text}});
+  report["warnings"] = warnings;
+  report["notes"] = summary.notes;
+}
 
 Json faults_json(const FaultCounts& counts) {
   return {{"inverted_faces", counts.inverted},
@@ -346,6 +367,7 @@ std::string report_of(const OffsetStatistics& statistics, double distance, const
   if (run.shell) report["shell"] = shell_json(*run.shell);
   if (run.cad) report["cad_file"] = cad_json(*run.cad);
   if (run.layers) report["layers"] = layers_json(*run.layers);
+  add_summary(report, run.summary);
   return as_text(report);
 }
 
@@ -387,10 +409,12 @@ std::string report_json(const IsoStatistics& statistics, const RunFacts& run) {
   if (run.inner_surface) report["inner_surface"] = surface_json(*run.inner_surface);
   if (run.level_set)
     report["level_set"] = {{"active_voxels", run.level_set->active_voxels}, {"voxel_size", run.level_set->voxel_size}};
+  add_summary(report, run.summary);
   return as_text(report);
 }
 
-std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset) {
+std::string check_json(const CheckResult& result, const std::string& source, const std::string& offset,
+                       const RunSummary& summary) {
   Json report = {{"version", version()},
                  {"source", source},
                  {"offset", offset},
@@ -408,6 +432,7 @@ std::string check_json(const CheckResult& result, const std::string& source, con
                  {"faces", faces_json(result.faces)}};
   if (result.certified) report["certified"] = certified_json(*result.certified, result.facts);
   if (result.obstacles) report["obstacles"] = obstacles_json(*result.obstacles);
+  add_summary(report, summary);
   return as_text(report);
 }
 

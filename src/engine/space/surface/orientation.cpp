@@ -235,6 +235,28 @@ bool any_box_in_another(const std::vector<Solid>& solids) {
   return false;
 }
 
+PieceFacts piece_facts(const Surface& surface, const std::vector<std::uint32_t>& component_of,
+                       std::uint32_t component) {
+  PieceFacts piece;
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    if (component_of[t] != component) continue;
+    if (vertices.empty() || surface.face[t] < piece.face) piece.face = surface.face[t];
+    vertices.insert(vertices.end(), surface.triangles[t].begin(), surface.triangles[t].end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  piece.vertices = vertices.size();
+  piece.lower = piece.upper = surface.vertices[vertices.front()];
+  for (const auto v : vertices) {
+    piece.lower = openvdb::math::minComponent(piece.lower, surface.vertices[v]);
+    piece.upper = openvdb::math::maxComponent(piece.upper, surface.vertices[v]);
+  }
+  piece.lower += surface.origin;
+  piece.upper += surface.origin;
+  return piece;
+}
+
 Judgement look_at_components(const Surface& surface, const std::vector<std::uint32_t>& component_of,
                              std::vector<Solid>& solids, Orient orient) {
   std::vector<std::vector<std::uint32_t>> around(solids.size());
@@ -284,7 +306,12 @@ void settle_outside(Surface& surface, const std::vector<std::uint32_t>& componen
   const auto [wrong, enclosed] = look_at_components(surface, component_of, solids, orient);
   facts.enclosed_components = enclosed;
   facts.inside_out_components = static_cast<std::size_t>(std::count(wrong.begin(), wrong.end(), 1));
-  if (orient == Orient::Keep || facts.inside_out_components == 0) return;
+  if (facts.inside_out_components == 0) return;
+  std::uint32_t largest = kNone;
+  for (std::uint32_t c = 0; c < solids.size(); ++c)
+    if (wrong[c] && (largest == kNone || solids[c].triangles > solids[largest].triangles)) largest = c;
+  facts.largest_inside_out = piece_facts(surface, component_of, largest);
+  if (orient == Orient::Keep) return;
   std::vector<std::uint8_t> turned(surface.triangles.size());
   const std::vector<std::uint8_t>& is_wrong = wrong;
   for_each_index(turned.size(), [&](std::size_t t) { turned[t] = is_wrong[component_of[t]]; });

@@ -92,12 +92,12 @@ void Descriptor::close() {
 
 std::string this_program() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
 
-std::string on_one_line(std::string_view told) {
+std::string on_one_line(std::string_view text) {
   std::string line;
-  while (!told.empty()) {
-    const std::size_t end = std::min(told.find('\n'), told.size());
-    std::string_view message = told.substr(0, end);
-    told.remove_prefix(std::min(end + 1, told.size()));
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view message = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
     if (message.starts_with(kPrefix)) message.remove_prefix(kPrefix.size());
     if (message.empty()) continue;
     if (!line.empty()) line += "; ";

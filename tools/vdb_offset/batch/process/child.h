@@ -33,7 +33,7 @@ class Descriptor {
 std::string this_program();
 
 /// What a process has reported, as one line: without the prefix of messages, and with semicolons between them.
-std::string on_one_line(std::string_view told);
+std::string on_one_line(std::string_view text);
 
 /// A model's process: this program with another command line.
 class Child {

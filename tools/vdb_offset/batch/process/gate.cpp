@@ -34,7 +34,7 @@ bool belongs_to_batch() {
   return true;
 }
 
-void tell_file_read(const std::string& path) { send_message(kHasReadFile, path); }
+void report_file_read(const std::string& path) { send_message(kHasReadFile, path); }
 
 bool wait_for_memory(std::size_t bytes) {
   if (!send_message(kAsksForMemory, fmt::format("{}", bytes))) return false;

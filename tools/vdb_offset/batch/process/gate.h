@@ -20,10 +20,11 @@ constexpr char kAsksForMemory = 'm', kHasReadFile = 'f';
 /// Whether this process is that of a model of a batch. If so, it ends with the batch, whatever ends that.
 bool belongs_to_batch();
 
-/// Tells the batch of a file that was read, which the command line does not name.
-void tell_file_read(const std::string& path);
+/// Reports to the batch a file that was read, which the command line does not name.
+void report_file_read(const std::string& path);
 
-/// Tells the batch how many bytes this process will need, and waits until it may go on. False if the batch is gone.
+/// Reports to the batch how many bytes this process will need, and waits until it may go on. False if the batch is
+/// gone.
 bool wait_for_memory(std::size_t bytes);
 
 }  // namespace vdb_offset::tool

@@ -20,7 +20,7 @@ class ParallelTasks : public Tasks {
       : log_(log), program_(words, "--sshlogin", input, log) {}
 
   bool are_at_work() override { return program_.is_at_work(); }
-  /// The tasks miss the mark of the batch; parallel begins no other once it is told to end.
+  /// The tasks miss the mark of the batch; parallel begins no other once it is asked to end.
   void stop() override { program_.signal(SIGTERM); }
   std::string last_words() const override { return last_line_of(log_); }
 

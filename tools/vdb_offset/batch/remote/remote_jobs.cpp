@@ -37,7 +37,7 @@ void rest() {
 /// The models that tasks have, by the names of their records.
 using Awaited = std::unordered_map<std::string, std::size_t>;
 
-/// Tells of the records that have come.
+/// Reports the records that have come.
 void look_for_records(const BatchRequest& request, std::span<const Model> models, const std::string& mark,
                       Awaited& awaited, const LocalJobs::Ended& ended) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_of_records(request.out))) {
@@ -50,7 +50,7 @@ void look_for_records(const BatchRequest& request, std::span<const Model> models
   }
 }
 
-/// What one of the tasks on this machine may take: GNU parallel begins as many at once as it was told to, for all
+/// What one of the tasks on this machine may take: GNU parallel begins as many at once as it was asked to, for all
 /// machines or for this one, or as many as there are processors; those of Slurm have processors of their own.
 Shares shares_of_task(BatchRequest request) {
   if (const char* const login = std::getenv("PARALLEL_SSHLOGIN"); login && request.partition.empty()) {

@@ -28,7 +28,7 @@ constexpr std::array<const char*, 3> kWays = {"here", "sshlogin", "slurm"};
 // Seconds after which tasks that GNU parallel has begun have ended, once it is gone: they look for the mark several
 // times a second, and what is at work ends at once.
 constexpr double kSecondsOfTasks = 3;
-// Seconds to wait for jobs that Slurm has been told to end.
+// Seconds to wait for jobs that Slurm has been asked to end.
 constexpr double kMostSeconds = 60;
 
 std::string path_of_mark(const std::string& out) { return state_folder(out) + "/run"; }
@@ -70,7 +70,7 @@ RunMark::RunMark(const std::string& out, Way way) : path_(path_of_mark(out)), na
   try {
     end_jobs(before);
   } catch (const InvalidInput& error) {
-    tell(error.what());
+    report_problem(error.what());
   }
 }
 

@@ -31,7 +31,7 @@ class SlurmTasks : public Tasks {
     try {
       ask_program({"scancel", array_}, kOption);
     } catch (const Error& error) {
-      tell(error.what());
+      report_problem(error.what());
     }
   }
 
@@ -42,7 +42,7 @@ class SlurmTasks : public Tasks {
     const Answer answer = ask_program({"squeue", "--noheader", "--jobs", array_, "--format", "%T %r"}, kOption);
     const bool unknown = answer.exit_code != 0 && answer.printed.find("Invalid job id") != std::string::npos;
     at_work_ = !unknown && !(answer.exit_code == 0 && answer.printed.empty());
-    if (answer.exit_code == 0) tell_of_waiting(answer.printed);
+    if (answer.exit_code == 0) report_waiting(answer.printed);
     return at_work_;
   }
   void stop() override {
@@ -53,11 +53,11 @@ class SlurmTasks : public Tasks {
 
  private:
   /// Says once why nothing begins, as with more processors asked for than a machine has.
-  void tell_of_waiting(const std::string& states) {
+  void report_waiting(const std::string& states) {
     has_begun_ |= states.find("RUNNING") != std::string::npos || states.find("COMPLETING") != std::string::npos;
     if (has_begun_ || seconds_since(submitted_) < kSecondsToTell) return;
     has_begun_ = true;
-    tell(fmt::format("{}: no job has begun yet: {}", kOption, states.substr(0, states.find('\n'))));
+    report_problem(fmt::format("{}: no job has begun yet: {}", kOption, states.substr(0, states.find('\n'))));
   }
 
   std::string array_, log_;
