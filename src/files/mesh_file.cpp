@@ -38,8 +38,8 @@ MeshFile parse(std::string name, Format format, FileBytes bytes, const ReadOptio
 
 bool has_rows(const MeshFile& file) { return file.document && file.document->rows(); }
 
-Format require_format(const std::string& path, const std::optional<Format>& told) {
-  const auto format = told ? told : format_of(path);
+Format require_format(const std::string& path, const std::optional<Format>& given) {
+  const auto format = given ? given : format_of(path);
   if (!format)
     throw InvalidInput(path +
                        ": expected a name that ends in .obj, .off, .ply, .stl, .3mf, .gltf, .glb, .vtp, .vtk or .vtu "
@@ -47,8 +47,8 @@ Format require_format(const std::string& path, const std::optional<Format>& told
   return *format;
 }
 
-Format require_written_format(const std::string& path, const std::optional<Format>& told) {
-  const Format format = require_format(path, told);
+Format require_written_format(const std::string& path, const std::optional<Format>& given) {
+  const Format format = require_format(path, given);
   if (!is_written(format))
     throw InvalidInput(path +
                        ": expected a format that can be written, got one that is read only (.glb has a place for "

@@ -969,7 +969,7 @@ TEST_CASE("command: a DXF drawing has its own unit, and keeps what is no curve",
   std::ofstream(shell.file("half.dxf")) << text;
   const Run run = shell("half.dxf cut.dxf -d 2mm -v");
   REQUIRE(run.code == 0);
-  CHECK_THAT(run.out, Catch::Contains("of 0.2 (") && Catch::Contains("1 curved shape became straight"));
+  CHECK_THAT(run.out, Catch::Contains("of 2 mm (") && Catch::Contains("1 curved shape became straight"));
   CHECK_THAT(run.err, Catch::Contains("half.dxf: not curves, copied unchanged: 1 TEXT"));
   CHECK(shell("check half.dxf cut.dxf -d 2mm --strict").code == 0);
   CHECK(shell("half.dxf other.dxf -d 2mm --unit mm").code == 0);

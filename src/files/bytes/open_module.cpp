@@ -17,8 +17,8 @@ namespace {
 
 /// The file of a module or a worker. Never a relative path, which could name a stranger's file.
 std::filesystem::path find_module(const std::string& file) {
-  if (const char* const told = std::getenv("VDB_OFFSET_MODULES"); told && std::filesystem::path(told).is_absolute())
-    return std::filesystem::path(told) / file;
+  if (const char* const named = std::getenv("VDB_OFFSET_MODULES"); named && std::filesystem::path(named).is_absolute())
+    return std::filesystem::path(named) / file;
   std::error_code failed;
   const auto folder = std::filesystem::read_symlink("/proc/self/exe", failed).parent_path();
   if (folder.is_absolute()) {

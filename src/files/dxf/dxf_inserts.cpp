@@ -169,9 +169,9 @@ class InsertResolver {
       remarks.emplace_back("its curves are those of paper space, as model space has none");
     if (!others_.empty()) {
       std::string names;
-      std::size_t told = 0, left = 0;
+      std::size_t named = 0, left = 0;
       for (const auto& [name, count] : others_) {
-        if (told++ < kMostNames) names += fmt::format("{}{} {}", names.empty() ? "" : ", ", count, name);
+        if (named++ < kMostNames) names += fmt::format("{}{} {}", names.empty() ? "" : ", ", count, name);
         else left += count;
       }
       if (left > 0) names += fmt::format(", {} more", left);

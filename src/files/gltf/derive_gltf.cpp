@@ -5,7 +5,7 @@
 // Positions are those of the shell; inner normals have the other sign, or new values where faces moved, and tangents
 // are turned with them. New elements go behind the binary data that are there, or into a buffer of their own inside the
 // JSON text, so that no file beside changes. A mesh of which the shell has no faces stays; of others, primitives
-// without any go. Accessors that cannot be read (sparse ones) are no longer named by primitives, which is told as a
+// without any go. Accessors that cannot be read (sparse ones) are no longer named by primitives, which is reported as a
 // loss.
 #include <fmt/format.h>
 

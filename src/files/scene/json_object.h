@@ -21,7 +21,7 @@ namespace vdb_offset::scene {
 using nlohmann::json;
 
 /// An object of the scene. Every key must be asked for by the time finish() is called, so that a mistyped one is
-/// told and not ignored.
+/// reported and not ignored.
 class JsonObject {
  public:
   JsonObject(const std::string& path, std::string where, const json& object)

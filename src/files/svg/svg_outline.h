@@ -30,7 +30,7 @@ class SvgPen {
   virtual void end(bool closed) = 0;
 };
 
-/// Walks over the value of one of the element's attributes; mistakes are told by the element's line.
+/// Walks over the value of one of the element's attributes; mistakes are reported by the element's line.
 SvgValueScanner scan_value(const SvgDocument& document, const SvgElement& element, const std::string& value,
                            std::string what);
 

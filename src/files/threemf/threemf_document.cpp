@@ -188,7 +188,7 @@ WrittenDocument ThreeMfDocument::rewrite(const MovedMesh& moved) const {
 }
 
 WrittenDocument ThreeMfDocument::derive(const SharedDerived& derived, const std::string& path) const {
-  std::vector<std::string> remarks;  // have been told
+  std::vector<std::string> remarks;  // have been reported
   const SlicerNames names = read_slicer_names(path_, archive_, remarks);
   WrittenDocument written;
   std::vector<ZipArchive::Replacement> replacements;
