@@ -40,12 +40,12 @@ struct DxfDrawing {
 };
 
 /// Reads the curves of a DXF file in ASCII: LINE, LWPOLYLINE, POLYLINE, ARC, CIRCLE, ELLIPSE and SPLINE of the section
-/// ENTITIES, and as INSERT shows them. Curved ones are flattened. What is not a curve is left alone and reported in a remark,
-/// as is what is not shown: invisible, on a layer that is off or frozen, or in paper space, unless all curves are. Ends
-/// of curves that are nearer than a millionth of the diagonal of the box around all are joined. Sets all of `file` that
-/// is a drawing's, from its text. \throw InvalidInput (file, line, what was expected, what was found) for what is cut
-/// or no DXF in ASCII, for entities that are seen from aside, splines without control points, and for blocks that are
-/// in themselves or show more than a million entities. OutOfBudget
+/// ENTITIES, and as INSERT shows them. Curved ones are flattened. What is not a curve is left alone and reported in a
+/// remark, as is what is not shown: invisible, on a layer that is off or frozen, or in paper space, unless all curves
+/// are. Ends of curves that are nearer than a millionth of the diagonal of the box around all are joined. Sets all of
+/// `file` that is a drawing's, from its text. \throw InvalidInput (file, line, what was expected, what was found) for
+/// what is cut or no DXF in ASCII, for entities that are seen from aside, splines without control points, and for
+/// blocks that are in themselves or show more than a million entities. OutOfBudget
 void parse_dxf(CurveFile& file, const CurveReading& how);
 
 /// Rewrites a file with points at other positions: of entities with straight segments the coordinates; others become
