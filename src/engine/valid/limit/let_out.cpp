@@ -20,13 +20,6 @@ struct LetOutRound {
 constexpr LetOutRound kLetOutRounds[] = {{.part = 1, .rounds = 20}, {.part = 0.5, .rounds = 20}};
 constexpr std::uint64_t kLetOutEvery = 4;
 
-// Thickness gradient: by how many distances thickness may change per distance along the surface, from a pulled vertex
-// to one beside it. Not measured.
-constexpr double kSteepest = 2;
-
-// A vertex with more than so many times a pulled vertex's area around it does not follow that. Not measured.
-constexpr double kMuchMoreArea = 4;
-
 }  // namespace
 
 LetOut::OldShares::const_iterator LetOut::find(const OldShares& shares, std::uint32_t v) {
@@ -58,37 +51,6 @@ void LetOut::let_out_some(double part) {
     share = farther;
   }
   keep_valid(before);
-}
-
-/// By how much more of its displacement a vertex may go than one beside it.
-double LetOut::steepest_change(std::uint32_t v, std::uint32_t beside) const {
-  return kSteepest * (state_.source[v] - state_.source[beside]).length() / std::abs(state_.distances[v]);
-}
-
-void LetOut::ease() {
-  Indices eased, open = state_.pulled;
-  const std::vector<double> before = state_.share;
-  std::vector<double>& share = state_.share;
-  // First in, first out: last in, first out would go round by long detours, over and over.
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    const std::uint32_t v = open[i];
-    if (share[v] == 0) continue;
-    for (const auto t : state_.surface.triangles_around(v))
-      for (const auto w : state_.surface.triangles[t]) {
-        if (state_.distances[w] == 0 || !state_.constrained.vertex_on_part(w)) continue;
-        const double most = share[v] + steepest_change(w, v);
-        if (!(share[w] > most) || !state_.is_short(w) ||
-            state_.live_area.area(w) > kMuchMoreArea * state_.live_area.area(v))
-          continue;
-        share[w] = most;
-        eased.push_back(w);
-        open.push_back(w);
-      }
-  }
-  sort_unique(eased);
-  OldShares old;
-  for (const auto v : eased) old.emplace_back(v, before[v]);
-  keep_valid(old);
 }
 
 /// Moves vertices to their new shares, then gives faulty ones their old share again, for as long as there are any. A

@@ -12,11 +12,9 @@
 
 namespace vdb_offset {
 
-/// The third and the last step of limit(): lets pulled vertices out again, and eases the thickness around them. Both
-/// are called when there are no faults, and make none: a vertex that would cause one keeps the share that it had.
-///
-/// operator() follows on pull_back(), and again on each Settling, as what was settled has pulled others back. ease() is
-/// the last, since what it takes back must not be let out again.
+/// The third step of limit(): lets pulled vertices out again, as far as no fault arises: a vertex that would cause one
+/// keeps the share that it had. Follows on pull_back(), and on each step that pulls others back or makes room.
+/// \pre there are no faults
 class LetOut {
  public:
   /// Keeps a reference.
@@ -27,18 +25,12 @@ class LetOut {
   /// it.
   void operator()(Progress& progress);
 
-  /// Takes the neighbours of a pulled vertex back as well, until thickness changes by no more than kSteepest along
-  /// edges. A vertex at its distance stays there, and one that is pulled back altogether is not followed, nor is one
-  /// by a vertex with far more area around it. \pre operator() has been called if any vertex was pulled.
-  void ease();
-
  private:
   /// Vertices and the shares that they had, sorted by vertex.
   using OldShares = std::vector<std::pair<std::uint32_t, double>>;
   static OldShares::const_iterator find(const OldShares& shares, std::uint32_t v);
 
   void let_out_some(double part);
-  double steepest_change(std::uint32_t v, std::uint32_t beside) const;
   void keep_valid(const OldShares& before);
   Indices restore_faulty(const OldShares& before);
 

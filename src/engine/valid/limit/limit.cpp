@@ -19,10 +19,6 @@
 namespace vdb_offset {
 namespace {
 
-// Passes of easing. A second one eases vertices that could not be eased together with their neighbours, and can be once
-// those have moved. Not measured.
-constexpr int kEasings = 2;
-
 // Rounds after which half of the stage is shown as done. Measured: 0 to 5,000.
 constexpr std::size_t kExpectedRounds = 200;
 
@@ -50,7 +46,6 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
     if (!state.keeps_faces && contract()) let_out(progress);
     if (return_to_faces(Which::All)) let_out(progress);
   }
-  for (int i = 0; i < kEasings; ++i) let_out.ease();
   while (pull_back(state)) progress.advance(1);  // should a face that was put back be judged otherwise than before
 }
 

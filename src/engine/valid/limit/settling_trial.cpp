@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <span>
 #include <utility>
 
 #include "motion/paths/propagate.h"
@@ -31,9 +30,6 @@ constexpr double kReaches[] = {0.01, 0.1, 0.3};
 // What a vertex that comes to be short costs when faces are to be won: so many times its area, live or not, beside what
 // its faces lose. See docs/dev/tuning.md.
 constexpr double kShortCosts = 3;
-// How many ways to slide aside are tried for faces: on gears and extruder_idler at ±0.2 and ±0.5 %, and two gears of
-// scenes, the first two freed a vertex in 62 of 1,061 trials, the others in 8 of 971.
-constexpr std::size_t kAsidesForFaces = 2;
 
 /// Whether a vertex is among some moves, or some old ones.
 template <class Some>
@@ -53,8 +49,8 @@ bool SettlingTrial::try_with_feature(const Move& move) {
 }
 
 bool SettlingTrial::try_with_others_aside(const Move& move) {
-  const auto all = std::span(kSlideAsides).first(aim_ == Aim::Faces ? kAsidesForFaces : std::size(kSlideAsides));
-  return std::any_of(all.begin(), all.end(), [&](const SlideAside& aside) { return try_out({move}, &aside); });
+  return std::any_of(std::begin(kSlideAsides), std::end(kSlideAsides),
+                     [&](const SlideAside& aside) { return try_out({move}, &aside); });
 }
 
 /// A move, and the same displacement of the vertices that edges lead to of which none is longer than a share of the

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -54,7 +53,7 @@ void PatchUntangler::start_from_farther() {
     for_each_index(
         patch.size(), [&](std::size_t i) { start_vertex_from_farther(patch[i]); }, 16);
   };
-  state_.statistics.followed_vertices = try_out(start, Keep::NoWorse);
+  state_.statistics.followed_vertices = try_out(start);
   for (const auto v : started)
     if (state_.share[v] != 1) state_.pulled.push_back(v);
 }
@@ -99,7 +98,7 @@ bool PatchUntangler::untangle_with(const UntangleSetting& setting, Progress& pro
     if (sizes.rings > kFewRings && state_.has_many_faults()) break;
     Indices chosen = around_faults(sizes.rings);
     if (chosen == last) break;
-    untangle(chosen, setting.energy, sizes, setting.least_contrast);
+    untangle(chosen, setting.energy, sizes);
     progress.advance(1);
     last = std::move(chosen);
   }
@@ -136,20 +135,18 @@ Indices PatchUntangler::around_faults(int rings) {
 }
 
 /// Untangles patches of these vertices, and keeps the moves that make nothing worse.
-void PatchUntangler::untangle(const Indices& chosen, const Untangler::Options& energy, const PatchSizes& sizes,
-                              double least_contrast) {
+void PatchUntangler::untangle(const Indices& chosen, const Untangler::Options& energy, const PatchSizes& sizes) {
   patches_.split(chosen);
-  leave_out(sizes, least_contrast);
+  leave_out(sizes);
   const Untangler untangler(state_.constrained, state_.distances, energy);
-  try_out([&](const Indices& patch) { untangler(patch, state_.whole); },
-          least_contrast > 0 ? Keep::Freed : Keep::NoWorse);
+  try_out([&](const Indices& patch) { untangler(patch, state_.whole); });
   ++pass_;
   ++state_.statistics.untanglings;
 }
 
 /// Drops patches that are too large, or hopeless (see schedule.h). In the first pass none counts as hopeless:
 /// what it leaves decides.
-void PatchUntangler::leave_out(const PatchSizes& sizes, double least_contrast) {
+void PatchUntangler::leave_out(const PatchSizes& sizes) {
   const std::size_t most = state_.started_from ? std::min(sizes.most_vertices, kWarmStartVertices)
                                                : sizes.most_vertices * (1 + state_.source.size() / kManyVertices);
   const std::vector<PatchFaults> faults = faults_by_patch();
@@ -158,20 +155,8 @@ void PatchUntangler::leave_out(const PatchSizes& sizes, double least_contrast) {
     const std::size_t n = patch.size();
     const PatchFaults& of_patch = faults[number];
     return n > most || of_patch.collided > sizes.most_collided ||
-           (!is_first && n > kHopelessVertices && of_patch.corners > kHopelessCorners * n) ||
-           (least_contrast > 0 && contrast(patch) < least_contrast);
+           (!is_first && n > kHopelessVertices && of_patch.corners > kHopelessCorners * n);
   });
-}
-
-/// The area around one vertex of a patch by that around another: the largest ratio.
-double PatchUntangler::contrast(const Indices& patch) const {
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  for (const auto v : patch) {
-    const double area = state_.live_area.area(v);
-    least = std::min(least, area);
-    most = std::max(most, area);
-  }
-  return most / least;
 }
 
 std::vector<PatchUntangler::PatchFaults> PatchUntangler::faults_by_patch() const {
@@ -227,10 +212,10 @@ void PatchUntangler::mark_losses(const std::vector<std::pair<std::uint32_t, doub
 }
 
 /// Lets move(patch) change the displacements and shares of the patches' vertices, in parallel; then takes back the
-/// patches that have got worse, or no better where they had no fault, or have gone astray; with Keep::Freed also those
-/// with a fault left. Returns how many vertices are not taken back.
+/// patches that have got worse, or no better where they had no fault, or have gone astray. Returns how many vertices
+/// are not taken back.
 template <class Move>
-std::size_t PatchUntangler::try_out(Move&& move, Keep keep) {
+std::size_t PatchUntangler::try_out(Move&& move) {
   const Indices& chosen = patches_.vertices();
   const std::vector<PatchFaults> before = faults_by_patch();
   std::vector<std::pair<Vec3d, double>> old;
@@ -249,8 +234,7 @@ std::size_t PatchUntangler::try_out(Move&& move, Keep keep) {
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::uint32_t v = chosen[i];
     const PatchFaults &was = before[patches_.of(v)], &is = after[patches_.of(v)];
-    const bool may_be_kept = !astray[patches_.of(v)] && (keep == Keep::NoWorse || !is.any_fault());
-    if (may_be_kept && (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was))) continue;
+    if (!astray[patches_.of(v)] && (was.any_fault() ? !was.is_less_than(is) : is.is_less_than(was))) continue;
     std::tie(state_.whole[v], state_.share[v]) = old[i];
     undone.push_back(v);
   }

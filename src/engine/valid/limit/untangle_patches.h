@@ -36,8 +36,6 @@ class PatchUntangler {
     bool any() const { return any_fault() || collided > 0; }
     bool is_less_than(const PatchFaults& other) const;
   };
-  /// Which moves of a patch are kept: those that make it no worse, or those alone that leave it without a fault.
-  enum class Keep { NoWorse, Freed };
 
   void start_from_farther();
   void start_vertex_from_farther(std::uint32_t v);
@@ -49,15 +47,13 @@ class PatchUntangler {
   void free_collided(Progress& progress);
 
   Indices around_faults(int rings);
-  void untangle(const Indices& chosen, const Untangler::Options& energy, const PatchSizes& sizes,
-                double least_contrast = 0);
-  void leave_out(const PatchSizes& sizes, double least_contrast);
-  double contrast(const Indices& patch) const;
+  void untangle(const Indices& chosen, const Untangler::Options& energy, const PatchSizes& sizes);
+  void leave_out(const PatchSizes& sizes);
   std::vector<PatchFaults> faults_by_patch() const;
   std::vector<std::uint8_t> patches_astray(const std::vector<std::pair<std::uint32_t, double>>& chosen);
   void mark_losses(const std::vector<std::pair<std::uint32_t, double>>& chosen, std::vector<std::uint8_t>& astray);
   template <class Move>
-  std::size_t try_out(Move&& move, Keep keep);
+  std::size_t try_out(Move&& move);
 
   LimitState& state_;
   Patches patches_;  // that are being tried

@@ -139,38 +139,11 @@ class UntangledPatch {
       const Vec3d ab = surface_.vertices[b] - surface_.vertices[a], ac = surface_.vertices[c] - surface_.vertices[a];
       const double length = ab.length(), twice_area = ab.cross(ac).length();
       if (is_needle(twice_area * twice_area, std::max(ab.lengthSqr(), ac.lengthSqr()))) continue;
-      Face face = options_.least_edge > 0 ? sturdy_face(t)
-                                          : face_of(surface_.triangles[t], length, ab.dot(ac) / length,
-                                                    twice_area / length, twice_area / 2);
+      const double along = ab.dot(ac) / length, height = twice_area / length;
+      Face face{surface_.triangles[t], {1 / length, -along / (length * height), 1 / height}, twice_area / 2, {}, {}};
       for (auto& corner : face.point) corner = index_of(corner, vertices, displacement);
       faces_.push_back(face);
     }
-  }
-
-  /// A face whose points are still vertices, by the length of its first edge, and by how far along that edge and above
-  /// it the third corner is.
-  static Face face_of(const std::array<std::uint32_t, 3>& corners, double length, double along, double height,
-                      double area) {
-    return {corners, {1 / length, -along / (length * height), 1 / height}, area, {}, {}};
-  }
-
-  /// A face on its longest edge, which counts as no shorter, nor its height as lower, than least_edge says; with an
-  /// area by which, however slender the face is, it resists changes of its height as any other face.
-  Face sturdy_face(std::uint32_t t) const {
-    std::array<std::uint32_t, 3> corners = surface_.triangles[t];
-    const auto& x = surface_.vertices;
-    const auto is_longest = [&] {
-      const double first = (x[corners[1]] - x[corners[0]]).lengthSqr();
-      return first >= (x[corners[2]] - x[corners[1]]).lengthSqr() &&
-             first >= (x[corners[0]] - x[corners[2]]).lengthSqr();
-    };
-    for (int turns = 0; turns < 2 && !is_longest(); ++turns)
-      std::rotate(corners.begin(), corners.begin() + 1, corners.end());
-    const Vec3d ab = x[corners[1]] - x[corners[0]], ac = x[corners[2]] - x[corners[0]];
-    const double least = options_.least_edge * scale_, stretch = std::max(1.0, least / ab.length()),
-                 length = ab.length() * stretch, along = ab.dot(ac) / ab.length() * stretch,
-                 height = std::max(ab.cross(ac).length() / ab.length() * stretch, std::min(least, length / 2));
-    return face_of(corners, length, along, height, height * height / 2);
   }
 
   void renew_planes() {

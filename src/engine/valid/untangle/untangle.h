@@ -26,9 +26,6 @@ class Untangler {
     int smoothing;          ///< How often normals are smoothed over the patch.
     bool keep_borders;      ///< Vertices at a border slide in the plane across it alone; held ones always do.
     bool thorough = false;  ///< Goes on where little more is gained: to the best shapes, and while faces stay folded.
-    /// In distances: edges and heights of faces count as no shorter. Where features are far smaller than the distance,
-    /// slivers would otherwise rule the energy: tiny in the source, they are stretched many times over in the offset.
-    double least_edge = 0;
   };
 
   /// Keeps references to the constrained surface and the distances of its vertices.
