@@ -12,11 +12,14 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <queue>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "ground/numbers/hash_mix.h"
+#include "ground/numbers/index_set.h"
 
 namespace vdb_offset {
 namespace {
@@ -39,8 +42,16 @@ constexpr double kAround = 2;
 class MiterJudge {
  public:
   MiterJudge(FaultFinder& faults, const Surface& surface, Corners corners, PreparedMesh::Marched& marched)
-      : faults_(faults), surface_(surface), mitered_(marched.mitered), paths_(marched.paths) {
+      : faults_(faults),
+        surface_(surface),
+        mitered_(marched.mitered),
+        paths_(marched.paths),
+        miters_(marched.miters),
+        gathered_(surface.vertices.size()),
+        is_mitered_(surface.vertices.size(), 0),
+        area_(surface.vertices.size(), 0.0) {
     for (const Miter& miter : marched.miters) {
+      for (const auto t : surface_.triangles_around(miter.vertex)) area_[miter.vertex] += surface_.extent(t);
       if (miter.gives_way) giving_way_.push_back(miter.vertex);
       if (corners == Corners::Miter && miter.state != VertexState::Reached) farther_.push_back(miter.vertex);
     }
@@ -89,12 +100,6 @@ class MiterJudge {
   }
 
  private:
-  double area_around(std::uint32_t v) const {
-    double area = 0;
-    for (const auto t : surface_.triangles_around(v)) area += surface_.extent(t);
-    return area;
-  }
-
   /// The vertices no farther than a length from some, along edges.
   Indices vertices_within(double length, const Indices& from) const {
     std::vector<double> left(surface_.vertices.size(), -1.0);  // of the length, at each vertex that has been reached
@@ -121,29 +126,33 @@ class MiterJudge {
 
   bool gives_way(std::uint32_t v) const { return std::binary_search(giving_way_.begin(), giving_way_.end(), v); }
 
+  /// Notes which vertices are mitered now. False if none is.
+  bool note_mitered() {
+    bool any = false;
+    for (const Miter& miter : miters_) any |= is_mitered_[miter.vertex] = mitered_.is_mitered(miter.vertex);
+    return any;
+  }
+
   /// The mitered vertices that a fault comes of: misplaced ones, and of each other fault those with the least area.
-  Indices faulty_miters() const {
-    Indices vertices;
-    for (const auto v : faults_.misplaced())
-      if (mitered_.is_mitered(v)) vertices.push_back(v);
+  /// Gathered by marks, as there may be millions of faults.
+  Indices faulty_miters() {
+    if (!note_mitered()) return {};
+    const auto gather = [&](std::uint32_t v) {
+      if (is_mitered_[v]) gathered_.add(v);
+    };
+    for (const auto v : faults_.misplaced()) gather(v);
     faults_.for_each_fault([&](std::uint32_t s, std::uint32_t t) {
-      std::vector<std::pair<double, std::uint32_t>> corners;
+      double least = std::numeric_limits<double>::infinity();
       for (const auto triangle : {s, t})
         for (const auto v : surface_.triangles[triangle])
-          if (mitered_.is_mitered(v)) corners.emplace_back(area_around(v), v);
-      if (corners.empty()) return;
-      const double least = std::min_element(corners.begin(), corners.end())->first;
-      for (const auto& [area, v] : corners)
-        if (area <= kAlike * least) vertices.push_back(v);
+          if (is_mitered_[v]) least = std::min(least, area_[v]);
+      for (const auto triangle : {s, t})
+        for (const auto v : surface_.triangles[triangle])
+          if (is_mitered_[v] && area_[v] <= kAlike * least) gathered_.add(v);
     });
     // What the rim of a shell meets is told by its corners alone.
-    faults_.for_each_faulty_corner(
-        [&](std::uint32_t v) {
-          if (mitered_.is_mitered(v)) vertices.push_back(v);
-        },
-        [](std::uint32_t) { return true; });
-    sort_unique(vertices);
-    return vertices;
+    faults_.for_each_faulty_corner(gather, [](std::uint32_t) { return true; });
+    return gathered_.take();
   }
 
   Indices to_try_again() const {
@@ -173,9 +182,13 @@ class MiterJudge {
   const Surface& surface_;
   MiteredPaths& mitered_;
   Paths& paths_;
-  Indices given_up_;    // vertices that are not to be mitered again; sorted
-  Indices giving_way_;  // mitered vertices that do; sorted
-  Indices farther_;     // vertices whose miters end farther away than the distance; sorted
+  std::span<const Miter> miters_;
+  IndexGatherer gathered_;               // of vertices; empty between uses
+  std::vector<std::uint8_t> is_mitered_;  // of each vertex, as note_mitered() has found it
+  std::vector<double> area_;             // of the faces around each vertex that has a miter; 0 of the others
+  Indices given_up_;                     // vertices that are not to be mitered again; sorted
+  Indices giving_way_;                   // mitered vertices that do; sorted
+  Indices farther_;                      // vertices whose miters end farther away than the distance; sorted
 };
 
 }  // namespace
