@@ -31,7 +31,7 @@
 #include "valid/faults/face_error.h"
 #include "valid/faults/fault_finder.h"
 #include "valid/limit/limit.h"
-#include "valid/limit/warm_start.h"
+#include "valid/untangle/warm_start.h"
 
 namespace vdb_offset {
 namespace {
@@ -176,6 +176,14 @@ class ResultMaker {
     return false;
   }
 
+  /// Whether faces are to be kept at their distance, and not vertices alone: miters go farther for them, or most
+  /// vertices have miters, as on a part of flat faces, where a vertex that slides takes whole faces out of their
+  /// planes.
+  bool keeps_faces(const Draft& draft) const {
+    if (mesh_.corners() != Corners::Miter || !draft.distances.at_corner().empty()) return false;
+    return goes_farther(draft) || 2 * draft.marched.miters.size() > mesh_.surface().vertices.size();
+  }
+
   static bool needs_mending(const Draft& draft) {
     const auto& states = draft.marched.paths.state;
     return draft.faults &&
@@ -190,7 +198,7 @@ class ResultMaker {
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.statistics.limit = limit(*draft.faults,
                                    {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths,
-                                    &draft.marched.mitered, goes_farther(draft) && draft.distances.at_corner().empty()},
+                                    &draft.marched.mitered, keeps_faces(draft)},
                                    progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     if (options_.keep_face_errors) draft.face_faults = draft.faults->of_faces(mesh_.mesh().face_count());
