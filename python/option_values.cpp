@@ -210,6 +210,9 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
     throw InvalidOption("miter_limit: expected a number of 1 or more");
   if (given.contains("miter_limit") && options.corners == Corners::Round)
     throw InvalidOption("miter_limit needs corners='miter'");
+  keywords.read("taper", options.taper);
+  if (!(options.taper >= 0) || !std::isfinite(options.taper))
+    throw InvalidOption("taper: expected a number of 0 or more");
   if (const py::object clearance = keywords["clearance"]; !clearance.is_none()) {
     options.clearance = clearance_of(clearance, mesh);
     if (!given.contains("obstacles")) throw InvalidOption("clearance needs obstacles");

@@ -88,6 +88,10 @@ struct VDB_OFFSET_API OffsetOptions {
   /// The longest that a miter may be, in distances, >= 1; one that would be longer is cut, unless its end is at the
   /// distance itself.
   double miter_limit = 4;
+  /// What falls short fades into its surroundings: along the surface, thickness rises from there by no more than so
+  /// many times the way, >= 0. 0: it may rise at once. Vertices on creases and those inside flat faces do not fade. Not
+  /// of curves and layers, nor with Collision::Merge.
+  double taper = 1;
   /// The surface that the mesh is a tessellation of, which outlives the call; nullptr: the mesh is all that is known.
   /// Where it is known, vertices go along its normals, and those on its sharp edges have the miters of its faces; a
   /// vertex is Reached that is at the distance from it, though its faces may be nearer by the deflection. Has

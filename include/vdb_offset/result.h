@@ -68,7 +68,8 @@ struct LimitStatistics {
   std::size_t untanglings = 0;            ///< Rounds in which patches were untangled.
   std::size_t rounds = 0;                 ///< Rounds in which vertices were pulled back or let out again.
   std::size_t limited_vertices = 0;
-  double thickness_lost = 0;  ///< Mean over the vertices of (asked - achieved) / asked that limit() took away.
+  std::size_t faded_vertices = 0;  ///< Those of them that would be farther, did not what is beside them fall short.
+  double thickness_lost = 0;       ///< Mean over the vertices of (asked - achieved) / asked that limit() took away.
 };
 
 /// What became of borders, and of what stays in planes.

@@ -59,6 +59,7 @@ struct VDB_OFFSET_API Scene {
   Collision collision = Collision::Limit;
   std::optional<Corners> corners;     ///< None: as OffsetOptions::corners without one.
   std::optional<double> miter_limit;  ///< See OffsetOptions::miter_limit, whose default holds without one.
+  std::optional<double> taper;        ///< See OffsetOptions::taper, whose default holds without one.
   std::vector<std::uint8_t> only;     ///< See OffsetOptions::only.
   Border border = Border::Slide;
   Polygons obstacle;

@@ -108,7 +108,7 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
 
 
 @takes(_options.OFFSET, without=["obstacles", "clearance", "distance_z", "corners", "miter_limit", "collision",
-                                 "texture", "save_vdb"])
+                                 "taper", "texture", "save_vdb"])
 def fit(vertices: np.ndarray, faces: Faces, other: Tuple[np.ndarray, Faces], clearance: Union[float, str],
         **options: Any) -> Offset:
     """Makes room between a mesh and another one: what is nearer to that than the clearance goes inward until it is not.

@@ -11,7 +11,7 @@ from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shel
 def offset_several(
     vertices: np.ndarray, faces: Faces, distances: Sequence[Distance], *,
     distance_z: Union[float, str, None] = None, corners: Optional[Literal['miter', 'round']] = None,
-    miter_limit: Optional[float] = None, collision: Literal['limit', 'merge'] = 'limit',
+    miter_limit: Optional[float] = None, collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
@@ -27,7 +27,7 @@ def offset_several(
 def offset(
     vertices: np.ndarray, faces: Faces, distance: Distance, *, distance_z: Union[float, str, None] = None,
     corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
-    collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
+    collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
@@ -63,7 +63,7 @@ def offset_curves(
 def offset_to_tolerance(
     vertices: np.ndarray, faces: Faces, distance: Distance, tolerance: Union[float, str], *, max_faces: int = 0,
     corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
-    collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
+    collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
@@ -91,7 +91,7 @@ def fit(
 def shell_several(
     vertices: np.ndarray, faces: Faces, distances: Sequence[Distance], *, inner: Optional[Distance] = None,
     corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
-    collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
+    collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
@@ -107,7 +107,7 @@ def shell_several(
 def shell(
     vertices: np.ndarray, faces: Faces, distance: Distance, *, inner: Optional[Distance] = None,
     corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
-    collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
+    collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
@@ -205,7 +205,7 @@ def check(
     vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: Optional[Distance] = None, *,
     tolerance: Union[float, str, None] = None, distance_z: Union[float, str, None] = None,
     corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
-    collision: Literal['limit', 'merge'] = 'limit', only: Optional[np.ndarray] = None,
+    collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,

@@ -56,6 +56,9 @@ OPTIONS: Dict[str, Option] = {
                           'how far a vertex on a sharp edge may go, in distances, 1 or more; None: 4'),
     "collision": Option(Literal["limit", "merge"], "limit",
                         '"limit": the result stays valid; "merge": each vertex goes as far as the distance grows'),
+    "taper": Option(float, 1.0,
+                    "what falls short fades: from there, thickness rises by no more than so many times the way along\n"
+                    "the surface; 0: it may rise at once"),
     "only": Option(Optional[np.ndarray], None,
                    "(m,) booleans, or numbers of faces: those that are offset; the others stay, as obstacles"),
     "border": Option(Literal["slide", "fixed", "free"], "slide",
@@ -111,7 +114,7 @@ _COMMON = ["precision", "voxel_size", "voxels_per_distance", "unit", "threads", 
 OFFSET = [name for name in OPTIONS if name not in ("inner", "close", *_OF_LAYERS, *_OF_ISO)]
 CURVES = ["distance_z", "corners", "miter_limit", "collision", "close", "paths", "save_vdb", *_COMMON]
 ISO = [*_OF_ISO, "weld", "orient", *_COMMON]
-_NOT_OF_LAYERS = ("paths", "face_errors", "collision", "distance_z", "save_vdb")
+_NOT_OF_LAYERS = ("paths", "face_errors", "collision", "taper", "distance_z", "save_vdb")
 LAYERS = [*_OF_LAYERS, *(name for name in OFFSET if name not in _NOT_OF_LAYERS)]
 CURVE_LAYERS = [*_HEIGHTS, *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
 

@@ -70,6 +70,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"collision", options.collision == Collision::Merge ? "merge" : "limit"},
           {"corners", job.corners() == Corners::Miter ? "miter" : "round"},
           {"miter-limit", job.corners() == Corners::Miter ? fmt::format("{}", options.miter_limit) : ""},
+          {"taper", fmt::format("{}", options.taper)},
           {"solver", options.solver == Solver::Eikonal ? "eikonal" : "closest"},
           {"weld", request.weld_text},
           {"orient", request.orient_text},

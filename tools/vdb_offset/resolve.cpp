@@ -43,6 +43,7 @@ void settle_fit_of_scene(Job& job) {
                                     {"--obstacle", job.source.obstacles.face_count() > 0},
                                     {"--collision", request.collision.has_value()},
                                     {"--corners", request.corners.has_value()},
+                                    {"--taper", request.taper.has_value()},
                                     {"--save-vdb", !request.vdb.empty()}})
     if (given) throw InvalidOption(fmt::format("{}: expected a scene without a fit, or a --distance", name));
   job.to_fit = job.source.scene->to_fit.view();
@@ -169,6 +170,7 @@ Job resolve_options(const Request& request, const Source& source) {
   if (request.collision) job.options.collision = *request.collision;
   if (request.corners) job.options.corners = *request.corners;
   if (request.miter_limit) job.options.miter_limit = *request.miter_limit;
+  if (request.taper) job.options.taper = *request.taper;
   if (request.miter_limit && job.corners() != Corners::Miter)
     throw InvalidOption("--miter-limit needs --corners miter, and the scene has round corners");
   settle_surroundings(job);

@@ -124,6 +124,8 @@ void read_collision_and_corners(JsonObject& offset, Scene& scene) {
   scene.miter_limit = offset.optional_number("miter_limit");
   if (scene.miter_limit && scene.corners == Corners::Round) offset.fail("no 'miter_limit' where 'corners' are round");
   if (scene.miter_limit && !(*scene.miter_limit >= 1)) offset.fail("a 'miter_limit' of 1 or more");
+  scene.taper = offset.optional_number("taper");
+  if (scene.taper && !(*scene.taper >= 0)) offset.fail("a 'taper' of 0 or more");
 }
 
 void read_part_and_obstacle(JsonObject& offset, Scene& scene) {
@@ -142,7 +144,7 @@ void read_distances(JsonObject& offset, Scene& scene) {
     scene.distance = read_distance(offset);
     return;
   }
-  for (const char* const other : {"distance", "obstacle", "shell", "collision", "corners"})
+  for (const char* const other : {"distance", "obstacle", "shell", "collision", "corners", "taper"})
     if (offset.find(other)) offset.fail(fmt::format("'fit' without '{}'", other));
   scene.to_fit = read_beside(offset.object("fit"), scene.clearance);
   if (!(scene.clearance > 0)) offset.fail("'fit' with a 'clearance' above 0");
@@ -182,6 +184,7 @@ void Scene::set(OffsetOptions& options) const {
   options.collision = collision;
   options.corners = corners;
   if (miter_limit) options.miter_limit = *miter_limit;
+  if (taper) options.taper = *taper;
   options.only = only;
   options.border = border;
   options.obstacles = obstacle.view();

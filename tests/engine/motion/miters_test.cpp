@@ -307,6 +307,7 @@ TEST_CASE("miter: where fronts meet, round corners keep to their paths", "[miter
   OffsetOptions options;
   options.distance = -0.12;
   options.corners = Corners::Round;
+  options.taper = 0;
   const OffsetResult result = offset(gear.view(), options);
   CHECK(result.statistics.limit.before.total() > 0);
   CHECK(in_state(result, VertexState::Reached) >= 0.998 * static_cast<double>(gear.positions.size()));

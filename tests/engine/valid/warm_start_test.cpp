@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/oracles.h"
-#include "valid/limit/warm_start.h"
+#include "valid/untangle/warm_start.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 

@@ -247,6 +247,10 @@ void declare_method(CommandLine& line, Draft& draft) {
         request.collision.reset();
         if (!request.cuts) request.collision = word == 1 ? Collision::Merge : Collision::Limit;
       });
+  line.option("--taper", "S",
+              "What falls short fades into its surroundings: along the surface, thickness rises from there by no more "
+              "than S times the way; 0: it may rise at once [1]",
+              request.taper, parse_taper);
   line.option("--solver", "NAME", "How the field is extended: 'closest' (exact) or 'eikonal' (first order) [closest]",
               request.solver, [](const std::string& text) {
                 return parse_word("--solver", text, {"closest", "eikonal"}) == 1 ? Solver::Eikonal : Solver::Closest;

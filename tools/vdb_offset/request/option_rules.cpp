@@ -61,7 +61,7 @@ void require_with_files(const Request& request) {
     given.insert(kLevelSet);
   require_rules(given, {{{"--faceted", "--fit-tolerance", "--collision cut"}, NeedsAnyOf, {kModel}},
                         {{"--inner", "--layers", "--heights", "--mode iso", "--tolerance", "--distance-xy", "--fit",
-                          "--symmetry", "--miter-limit", "--collision merge"},
+                          "--symmetry", "--miter-limit", "--taper", "--collision merge"},
                          Excludes,
                          {kModel}},
                         {{"--distance-of", "--only", "--faceted"}, Excludes, {kHollowModel}},
@@ -147,9 +147,9 @@ void require_together(const GivenNames& given) {
   using enum OptionRule::Relation;
   const std::vector<OptionRule> rules = {
       {{"--adaptivity", "--inside", "--keep-specks", "--transport"}, NeedsAnyOf, {"--mode iso"}},
-      {{"--only", "--border", "--symmetry", "--obstacle", "--distance-from", "--collision", "--corners", "--solver",
-        "--states", "--paths", "--html", "--save-vdb", "--normals keep", "--layers", "--heights", "--fit",
-        "--tolerance", "--distance-of", "--blend"},
+      {{"--only",    "--border",  "--symmetry", "--obstacle",  "--distance-from", "--collision", "--taper",
+        "--corners", "--solver",  "--states",   "--paths",     "--html",          "--save-vdb",  "--normals keep",
+        "--layers",  "--heights", "--fit",      "--tolerance", "--distance-of",   "--blend"},
        Excludes,
        {"--mode iso"}},
       {{"--first-height", "--total-thickness", "--growth"}, Excludes, {"--heights"}},
@@ -168,8 +168,8 @@ void require_together(const GivenNames& given) {
       {{"--distance-xy"}, NeedsAnyOf, {"--distance-z"}},
       {{"--distance-z"}, NeedsAnyOf, {"--distance-xy"}},
       {{"--obstacle"}, Excludes, {"--distance-xy", "--fit", "--collision cut"}},
-      {{"--collision", "--paths"}, Excludes, {"--layers", "--heights"}},
-      {{"--collision", "--corners", "--distance-xy"}, Excludes, {"--fit"}},
+      {{"--collision", "--taper", "--paths"}, Excludes, {"--layers", "--heights"}},
+      {{"--collision", "--taper", "--corners", "--distance-xy"}, Excludes, {"--fit"}},
       {{"--fit"}, NeedsAnyOf, {"--clearance"}},
       {{"--clearance"}, NeedsAnyOf, {"--obstacle", "--fit"}},
       {{"--inner"}, NeedsAnyOf, {"--shell"}},
@@ -199,9 +199,9 @@ void require_miters(const Request& request) {
 void require_options_for(const Request& request, bool curves, const char* meshes) {
   if (const char* const of_curves = first_given(request, {"--close", "--flatten"}); of_curves && !curves)
     throw UsageError(fmt::format("{}: expected curves, as this is not for meshes", of_curves));
-  const char* of_meshes = first_given(
-      request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle", "--shell", "--mode iso",
-                "--tolerance", "--orient fix-direction-only", "--orient fix-cavities", "--deflection", "--fit"});
+  const char* of_meshes = first_given(request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle",
+                                                "--shell", "--mode iso", "--tolerance", "--orient fix-direction-only",
+                                                "--orient fix-cavities", "--deflection", "--fit", "--taper"});
   if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";
   if (of_meshes && curves)
     throw UsageError(fmt::format("{}: expected {}, as this is not for curves", of_meshes, meshes));

@@ -159,6 +159,11 @@ double parse_miter_limit(const std::string& text) {
                       std::numeric_limits<double>::max());
 }
 
+double parse_taper(const std::string& text) {
+  return parse_number("--taper", text, "a number of at least 0", -std::numeric_limits<double>::denorm_min(),
+                      std::numeric_limits<double>::max());
+}
+
 double parse_strict_faces(const std::string& text) {
   return parse_number("--strict-faces", text.ends_with('%') ? text.substr(0, text.size() - 1) : text,
                       "a percentage of 0 or more", -std::numeric_limits<double>::denorm_min(),

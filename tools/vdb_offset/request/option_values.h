@@ -80,6 +80,8 @@ Border parse_border(const std::string& text);
 Corners parse_corners(const std::string& text);
 /// A number of at least 1.
 double parse_miter_limit(const std::string& text);
+/// A number of at least 0.
+double parse_taper(const std::string& text);
 
 /// Percent, 0 or more.
 double parse_strict_faces(const std::string& text);

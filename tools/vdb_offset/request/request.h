@@ -97,7 +97,7 @@ struct Request {
   std::optional<Solver> solver;
   std::optional<Collision> collision;
   std::optional<Corners> corners;
-  std::optional<double> miter_limit;
+  std::optional<double> miter_limit, taper;
 
   GridOptions grid;
   WeldOptions weld = WeldOptions::automatic();

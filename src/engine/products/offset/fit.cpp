@@ -146,7 +146,7 @@ class Fitting {
       for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(p[k]));
     wanted_ = clearance * (1 + kBeyond) + 2 * largest * Rounding(options.precision).epsilon();
     options_.obstacles = {};
-    options_.clearance = 0;
+    options_.clearance = options_.taper = 0;  // and each vertex goes as far as it has to
     options_.metric = {};
     options_.off_source = options_.inner_skin_last = false;
     options_.corners = Corners::Miter;

@@ -131,6 +131,7 @@ Json limit_json(const LimitStatistics& limit) {
           {"untanglings", limit.untanglings},
           {"rounds", limit.rounds},
           {"vertices", limit.limited_vertices},
+          {"faded", limit.faded_vertices},
           {"mean_thickness_lost", limit.thickness_lost}};
 }
 

@@ -8,6 +8,7 @@
 #include "ground/system/assert.h"
 #include "ground/system/progress_count.h"
 #include "valid/limit/contraction.h"
+#include "valid/limit/fading.h"
 #include "valid/limit/let_out.h"
 #include "valid/limit/limit_state.h"
 #include "valid/limit/pull_back.h"
@@ -22,7 +23,16 @@ namespace {
 // Rounds after which half of the stage is shown as done. Measured: 0 to 5,000.
 constexpr std::size_t kExpectedRounds = 200;
 
-void pull_back_and_let_out(LimitState& state, Progress& progress) {
+/// Whether all vertices are at their distances without a fault, and there is nothing to do.
+bool is_done(const LimitState& state) {
+  if (state.keeps_faces || state.faults.any() || !state.faults.misplaced().empty()) return false;
+  for (std::uint32_t v = 0; v < state.share.size(); ++v)
+    if (state.distances[v] != 0 && state.constrained.vertex_on_part(v) && state.is_short(v)) return false;
+  return true;
+}
+
+void make_valid(LimitState& state, double taper, Progress& progress) {
+  if (is_done(state)) return;
   while (pull_back(state)) progress.advance(1);
   LetOut let_out(state);
   let_out(progress);
@@ -46,6 +56,7 @@ void pull_back_and_let_out(LimitState& state, Progress& progress) {
     if (!state.keeps_faces && contract()) let_out(progress);
     if (return_to_faces(Which::All)) let_out(progress);
   }
+  if (taper > 0) Fading{state, taper}(progress);
   while (pull_back(state)) progress.advance(1);  // should a face that was put back be judged otherwise than before
 }
 
@@ -114,7 +125,7 @@ LimitStatistics limit(FaultFinder& faults, const SurfaceOffset& offset, const Pr
   Progress progress(callback, Stage::Limit, kExpectedRounds, Units::Unknown);
   LimitState state(faults, offset, started_from);
   PatchUntangler{state}(progress);
-  pull_back_and_let_out(state, progress);
+  make_valid(state, offset.taper, progress);
   return finish(state, starts);
 }
 

@@ -6,7 +6,7 @@
 #include "motion/paths/miters.h"
 #include "motion/paths/propagate.h"
 #include "valid/faults/fault_finder.h"
-#include "valid/limit/warm_start.h"
+#include "valid/untangle/warm_start.h"
 #include "vdb_offset/result.h"
 #include "vdb_offset/run.h"
 
@@ -19,7 +19,8 @@ struct SurfaceOffset {
   const Distances& distances;     ///< Of these vertices.
   Paths& paths;                   ///< Of these vertices; displacement 0 of those that are not on the moving part.
   MiteredPaths* mitered = nullptr;  ///< Of these vertices, if any are mitered.
-  bool keeps_faces = false;  ///< Faces are to be at the distance: no vertex slides where that loses more of them.
+  bool keeps_faces = false;       ///< Faces are to be at the distance: no vertex slides where that loses more of them.
+  double taper = 0;               ///< See OffsetOptions::taper.
 };
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew (see fault_finder.h
@@ -38,7 +39,7 @@ struct SurfaceOffset {
 ///    aside.
 /// 5. Settling (Settling): short vertices are put where there is room, if less is lost with what goes back for that.
 /// 6. Contracting (Contraction): what is short yet is put beside neighbours that are at the distance.
-/// 7. Easing (LetOut::ease()): vertices around pulled ones follow these, where thickness would change too fast.
+/// 7. Fading (Fading): what is beside short vertices comes nearer, where thickness would change too fast.
 /// 8. Pulling back once more, should a face that was put back be judged otherwise than before.
 /// With `started_from`, patches that were moved in that offset and are faulty here start from there, and patches that
 /// could not be freed there are not tried again.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ground/system/assert.h"
+#include "space/surface/creases.h"
 #include "valid/untangle/schedule.h"
 
 namespace vdb_offset {
@@ -41,6 +42,10 @@ LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, c
   statistics.more_source_crossings = faults.source_crossings().has_more();
   statistics.before = faults.count();
   many_at_first = fault_count() > kManyFaults || (started_from && started_from->many_faults);
+}
+
+void LimitState::find_creases() {
+  if (on_crease.empty()) on_crease = vertices_on_creases(surface);
 }
 
 bool LimitState::has_many_faults() const {

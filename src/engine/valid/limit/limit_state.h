@@ -11,7 +11,7 @@
 #include "ground/numbers/index_set.h"
 #include "valid/limit/limit.h"
 #include "valid/limit/live_area.h"
-#include "valid/limit/warm_start.h"
+#include "valid/untangle/warm_start.h"
 
 namespace vdb_offset {
 
@@ -41,9 +41,12 @@ struct LimitState {
   std::vector<double> share;  ///< Of each vertex: 0 .. 1.
   Indices pulled;             ///< Vertices that have been pulled back at some time.
   LiveArea live_area;
-  IndexGatherer gathered;  ///< Of vertices; empty between uses.
-  bool many_at_first;      ///< There were more than kManyFaults faults at the beginning, or at that of the warm start.
+  IndexGatherer gathered;               ///< Of vertices; empty between uses.
+  std::vector<std::uint8_t> on_crease;  ///< Of each vertex; empty before find_creases().
+  bool many_at_first;  ///< There were more than kManyFaults faults at the beginning, or at that of the warm start.
   LimitStatistics statistics;
+
+  void find_creases();
 
   std::size_t fault_count() const { return faults.count().total(); }
   /// Whether there are so many faults that as little is tried as kManyFaults says; with a warm start, whether there

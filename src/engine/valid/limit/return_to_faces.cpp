@@ -9,7 +9,6 @@
 #include "ground/mesh/prevailing_point.h"
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
-#include "space/surface/creases.h"
 
 namespace vdb_offset {
 namespace {
@@ -38,7 +37,7 @@ bool ReturnToFaces::may_move(std::uint32_t v) const {
 }
 
 bool ReturnToFaces::operator()(Which which) {
-  if (on_crease_.empty()) on_crease_ = vertices_on_creases(state_.surface);
+  if (state_.keeps_faces) state_.find_creases();
   // What has moved meanwhile may have made a place no better than where its vertex is.
   PlaceTrials trials(state_,
                      [&](std::uint32_t v, const Place& place) { return place.off < state_.off_planes(v) - kLessOff; });
@@ -53,7 +52,7 @@ bool ReturnToFaces::operator()(Which which) {
 }
 
 bool ReturnToFaces::settle() {
-  VDB_OFFSET_ASSERT(state_.keeps_faces && !on_crease_.empty());
+  VDB_OFFSET_ASSERT(state_.keeps_faces && !state_.on_crease.empty());
   if (state_.faults.any()) return false;
   std::vector<std::pair<double, Candidate>> all;
   for (Candidate& candidate : candidates(state_.moved_since({}, 0), Which::All)) {
@@ -88,7 +87,7 @@ bool ReturnToFaces::settle(const Candidate& candidate, SettlingTrial& trial) con
 /// short, else where it may be off its planes.
 bool ReturnToFaces::may_be_better(std::uint32_t v) const {
   const bool is_elsewhere = state_.share[v] != 1 || state_.whole[v] != state_.paths.displacement[v];
-  return is_elsewhere || (state_.keeps_faces ? on_crease_[v] != 0 : state_.is_short(v));
+  return is_elsewhere || (state_.keeps_faces ? state_.on_crease[v] != 0 : state_.is_short(v));
 }
 
 /// Those of some vertices with live area that have places better than where they are.
@@ -99,6 +98,7 @@ std::vector<ReturnToFaces::Candidate> ReturnToFaces::candidates(const Indices& v
     if (may_move(v) && may_be_better(v) && state_.off_planes(v) > kLessOff) some.push_back(v);
   state_.live_area.measure(some);
   std::erase_if(some, [&](std::uint32_t v) { return !(state_.live_area[v] > least_area); });
+  if (!some.empty()) state_.find_creases();
   std::vector<Candidate> all(some.size());
   for_each_index(
       some.size(),
@@ -122,7 +122,7 @@ std::vector<ReturnToFaces::Place> ReturnToFaces::places(std::uint32_t v, Which w
     else places.push_back({state_.paths.displacement[v], kBest});  // comes first, and others may follow from there
   }
   if (!state_.constrained.obstacles) {
-    if (on_crease_[v]) offer_planes(v, worst, places);
+    if (state_.on_crease[v]) offer_planes(v, worst, places);
     if (which == Which::All && (state_.keeps_faces || state_.is_short(v))) offer_images(v, worst, places);
   }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.off < b.off; });

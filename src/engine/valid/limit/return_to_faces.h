@@ -46,8 +46,7 @@ class ReturnToFaces {
   bool settle(const Candidate& candidate, SettlingTrial& trial) const;
 
   LimitState& state_;
-  Displacements before_;                 // displacements when all vertices were tried last; empty before that
-  std::vector<std::uint8_t> on_crease_;  // of each vertex; empty before the first call
+  Displacements before_;  // displacements when all vertices were tried last; empty before that
 };
 
 }  // namespace vdb_offset

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "valid/limit/warm_start.h"
+#include "valid/untangle/warm_start.h"
 
 #include <algorithm>
 #include <cmath>
