@@ -183,12 +183,12 @@ class MiterJudge {
   MiteredPaths& mitered_;
   Paths& paths_;
   std::span<const Miter> miters_;
-  IndexGatherer gathered_;               // of vertices; empty between uses
+  IndexGatherer gathered_;                // of vertices; empty between uses
   std::vector<std::uint8_t> is_mitered_;  // of each vertex, as note_mitered() has found it
-  std::vector<double> area_;             // of the faces around each vertex that has a miter; 0 of the others
-  Indices given_up_;                     // vertices that are not to be mitered again; sorted
-  Indices giving_way_;                   // mitered vertices that do; sorted
-  Indices farther_;                      // vertices whose miters end farther away than the distance; sorted
+  std::vector<double> area_;              // of the faces around each vertex that has a miter; 0 of the others
+  Indices given_up_;                      // vertices that are not to be mitered again; sorted
+  Indices giving_way_;                    // mitered vertices that do; sorted
+  Indices farther_;                       // vertices whose miters end farther away than the distance; sorted
 };
 
 }  // namespace

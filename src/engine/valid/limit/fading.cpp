@@ -30,7 +30,7 @@ double Fading::thickness(std::uint32_t v) const {
 
 /// Whether a vertex is on a crease, or all faces around it lie in one plane.
 bool Fading::is_exact(std::uint32_t v) const {
-  if (state_.on_crease[v] || (state_.mitered && state_.mitered->is_mitred(v))) return true;
+  if (state_.on_crease[v] || (state_.mitered && state_.mitered->is_mitered(v))) return true;
   const Vec3d* first = nullptr;
   for (const auto t : state_.surface.triangles_around(v)) {
     const Vec3d& normal = state_.surface.triangle_normals[t];

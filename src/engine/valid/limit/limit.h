@@ -19,8 +19,8 @@ struct SurfaceOffset {
   const Distances& distances;     ///< Of these vertices.
   Paths& paths;                   ///< Of these vertices; displacement 0 of those that are not on the moving part.
   MiteredPaths* mitered = nullptr;  ///< Of these vertices, if any are mitered.
-  bool keeps_faces = false;       ///< Faces are to be at the distance: no vertex slides where that loses more of them.
-  double taper = 0;               ///< See OffsetOptions::taper.
+  bool keeps_faces = false;  ///< Faces are to be at the distance: no vertex slides where that loses more of them.
+  double taper = 0;          ///< See OffsetOptions::taper.
 };
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew (see fault_finder.h
