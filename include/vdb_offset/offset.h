@@ -62,7 +62,7 @@ VDB_OFFSET_API OffsetStatistics plan_fit(PolygonView mesh, PolygonView other, do
 
 struct VDB_OFFSET_API CheckOptions {
   /// The distance that was asked for, world units, negative inward, one for all vertices or one for each; empty: the
-  /// median of the distances found, with the sign of most of them.
+  /// median of the distances found, with the sign of most of them; with miters that of most of the faces' area.
   std::optional<Distances> distance;
   /// Marks of the faces that were offset. This and the next seven are as they were for the offset (see OffsetOptions).
   std::vector<std::uint8_t> only;

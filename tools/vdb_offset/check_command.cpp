@@ -54,7 +54,7 @@ void declare_how_far(CommandLine& line, CheckRequest& request) {
   line.add_unit(made.unit, made.input, made.lengths);
   line.option("-d,--distance", "D",
               "Distance asked for: world units, or percent of SOURCE's diagonal; negative is inward; or an "
-              "expression [the median of what is found]",
+              "expression [that of most of the faces' area]",
               request.distance);
   line.option("--distance-xy", "A", "Instead, with --distance-z: as it was for the offset", request.distance_xy);
   line.option("--distance-z", "B", "The distance along z, with --distance-xy", request.distance_z);

@@ -220,3 +220,22 @@ TEST_CASE("check: progress rises to its end, changes nothing, and cancels at eac
     CHECK(calls == last);
   }
 }
+
+TEST_CASE("check: a distance that is not said is that of most of the faces' area, with miters", "[check]") {
+  CheckOptions miters, round;
+  round.corners = Corners::Round;
+  const auto found = [](const Polygons& mesh, double distance, const CheckOptions& how) {
+    OffsetOptions options;
+    options.distance = distance;
+    options.corners = how.corners;
+    return check_offset(mesh.view(), offset(mesh.view(), options).positions, how).distance;
+  };
+  const Polygons box = shapes::box(Vec3d(20, 20, 20), 1, true);
+  for (const double d : {0.2, -0.3}) {
+    CHECK(found(box, d, miters) == Approx(d));  // every vertex is sqrt(3) times as far
+    CHECK(found(box, d, round) == Approx(d));
+  }
+  // The middles of faces are a little nearer, and vertices are where they were sent.
+  const Polygons sphere = shapes::icosphere(1, 3);
+  for (const CheckOptions& how : {miters, round}) CHECK(found(sphere, 0.1, how) == Approx(0.1).epsilon(1e-9));
+}

@@ -277,3 +277,22 @@ TEST_CASE("curves: points that stay keep their digits, and a segment between the
   }
   CHECK(held > 10);
 }
+
+TEST_CASE("curves: pieces of an outline are joined from wherever the file begins", "[curves]") {
+  // A rectangle in four pieces, with a gap of 0.3 that lies in the middle of the file.
+  Curves pieces;
+  pieces.positions = {{0, 0, 0}, {0, 30, 0}, {0, 30, 0}, {50, 30, 0}, {50, 29.7, 0}, {50, 0, 0}, {50, 0, 0}, {0, 0, 0}};
+  for (const std::uint32_t first : {0U, 2U, 4U, 6U}) pieces.add_face({first, first + 1});
+  const std::vector<OpenCurve> open = open_curves(pieces.view());
+  REQUIRE(open.size() == 1);
+  CHECK(open[0].gap == Approx(0.3));
+  CHECK(open[0].length == Approx(159.7));
+  CHECK(close_curves(pieces).size() == 1);
+  OffsetOptions options;
+  options.distance = 0.1;
+  const OffsetResult result = offset_curves(pieces.view(), std::vector<Distances>{0.1}, options).front();
+  for (std::size_t p = 0; p < pieces.positions.size(); ++p) {
+    const Vec3d& at = result.positions[p];
+    CHECK((at[0] == Approx(-0.1) || at[0] == Approx(50.1)));
+  }
+}

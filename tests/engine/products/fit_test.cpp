@@ -319,3 +319,15 @@ TEST_CASE("fit: the same for any number of threads", "[fit]") {
   one.threads = 1;
   CHECK(fit(peg.view(), socket.view(), 0.05, one).positions == fit(peg.view(), socket.view(), 0.05, all).positions);
 }
+
+TEST_CASE("fit: the deepest move is that of a vertex, whose faces go by different distances", "[fit]") {
+  // A box whose lid lies 1 too high for a plate above it: its four corners move by 1.2, its sides stay.
+  const Polygons box = shapes::box(Vec3d(10, 10, 10), 1, true);
+  Polygons plate = shapes::box(Vec3d(20, 20, 10), 1, true);
+  for (Vec3d& p : plate.positions) p[2] += 9;
+  const OffsetResult result = fit(box.view(), plate.view(), 0.2, {});
+  REQUIRE(result.statistics.fit);
+  CHECK(result.statistics.fit->near == 0);
+  CHECK(result.statistics.fit->moved == 4);
+  CHECK(result.statistics.fit->deepest == Approx(1.2).epsilon(1e-5));
+}

@@ -30,7 +30,7 @@ Some options are for the whole batch: --max-memory limits all models at once, by
 machine, with --slurm per job); --dry-run prints which models would be done; --verbose prints the row of each model as
 it ends; --quiet only prints errors.
 
-Models are files that end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .svg, .dxf, .dat or .xy, also
+Models are files that end in .obj, .ply, .stl, .off, .3mf, .glb, .gltf, .vtp, .vtk, .vtu, .step, .stp, .brep, .svg, .dxf, .dat or .xy, also
 with .gz or .zst behind it; others (.txt, scenes in .json, .fbx) have to be chosen with --models.
 
 Examples:

@@ -210,7 +210,8 @@ void require_options_for(const Request& request, bool curves, const char* meshes
 void require_sound(const Request& request) {
   require_miters(request);
   require_endings(request);
-  require(request.layers || !request.distances.empty() || scene::is_scene(request.input), "missing --distance");
+  require(request.layers || !request.distances.empty() || scene::is_scene(request.input),
+          "missing --distance, as -d 0.2 (in the units of the file) or -d 1% (of the diagonal)");
   require(request.output != "-" || !request.layers, "OUTPUT: expected a file for layers, got '-'");
   require(request.output != "-" || request.distances.size() < 2, "OUTPUT: expected a file for each distance, got '-'");
   require_even(request);

@@ -29,7 +29,7 @@ std::string percent(double share) { return share < 1e-8 ? "0" : fmt::format("{:.
 /// Whether faces could be split in place of a mesh that is finer, for which the option is named then.
 bool may_be_split(const Job& job, const OffsetStatistics& statistics) {
   return !statistics.certified && !job.curves() && !job.request.layers && !job.request.axes && !job.to_fit &&
-         !job.shell && job.files.outputs.size() == 1;
+         !job.shell && job.files.outputs.size() == 1 && !is_cad_output(job.request.output, job.request);
 }
 
 /// Why faces at sharp corners are off, and what helps. Where more than two faces meet at an edge, nothing does.
@@ -42,13 +42,14 @@ std::string corners_in_words(const Job& job, const OffsetStatistics& statistics)
                        any_branches ? fmt::format(" (neither helps {})", branches) : "");
   const MiterFacts& miters = statistics.miters;
   std::vector<std::string> which;
-  if (miters.unproven + miters.taken_back > 0) which.emplace_back("without room for a miter");
+  const std::size_t round = miters.unproven + miters.taken_back;
+  if (round > 0) which.emplace_back("without room for a miter");
   if (miters.cut > 0) which.emplace_back("whose miters are cut");
   if (miters.excess > kAtDistance) which.emplace_back("where more planes meet than one point can be on");
   if (any_branches) which.emplace_back(branches);
   return fmt::format("is at sharp corners {}{}",
                      which.empty() ? "without a miter" : fmt::to_string(fmt::join(which, ", or ")),
-                     miters.cut > 0                  ? ". Use a larger --miter-limit"
+                     miters.cut > round              ? ". Use a larger --miter-limit"
                      : job.request.layers            ? ""
                      : may_be_split(job, statistics) ? ". To split the faces there: --tolerance 1%"
                                                      : "");

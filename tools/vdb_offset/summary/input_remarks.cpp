@@ -122,9 +122,11 @@ void add_source_crossings(const Job& job, const OffsetStatistics& statistics, Re
                                         limit.source_crossings, job.curves() ? "segment" : "triangle");
   const std::string near = limit.more_source_crossings
                                ? "the result was not searched near them"
-                               : fmt::format("the result adds {} near them", limit.crossings_near_source);
+                               : fmt::format("the result adds {} pairs near them", limit.crossings_near_source);
   const char* const remedy =
-      job.curves() || job.request.layers || job.request.iso ? "" : ". For a clean surface: --mode iso";
+      job.curves() || job.request.layers || job.request.iso || is_cad_output(job.request.output, job.request)
+          ? ""
+          : ". For a clean surface: --mode iso";
   const bool is_refined = statistics.certified && statistics.certified->source_faces > 0;
   const std::size_t own = is_refined ? statistics.certified->source_crossings : 0;
   if (is_refined && own == 0)
@@ -133,7 +135,7 @@ void add_source_crossings(const Job& job, const OffsetStatistics& statistics, Re
                             "vertices are rounded; {}{}",
                             pairs, near, has_all_digits(job) ? "" : ". Save the input as OBJ, which has more digits"));
   else
-    remarks.add(Gravity::Input,
+    remarks.add(limit.crossings_near_source > 0 ? Gravity::Wrong : Gravity::Input,
                 fmt::format("the input intersects itself at {}{} (not repaired); {}{}", pairs,
                             is_refined ? fmt::format(" after splitting, {} before", own) : "", near, remedy));
 }

@@ -96,6 +96,11 @@ void add_fit(const FitFacts& fit, Remarks& remarks) {
   if (!fit.is_signed)
     remarks.add(Gravity::Input,
                 "the mesh to fit is not closed or inconsistently oriented: both sides of it keep clear");
+  if (fit.near > 0)
+    remarks.add(Gravity::Wrong,
+                fmt::format("it does not fit: {} of {} triangles are still too near. Offset the other mesh "
+                            "instead, or use a smaller --clearance",
+                            fit.near, fit.near_at_start));
   if (fit.enclosed > 0)
     remarks.add(Gravity::Wrong, fmt::format("{} pieces of the mesh to fit lie inside the result: nothing can give way "
                                             "to them",

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "ground/mesh/miter_point.h"
@@ -86,22 +87,60 @@ std::size_t count_torn(const Surface& surface, PolygonView source, std::span<con
   return torn;
 }
 
-/// The median distance of the moving part's vertices, with the sign of the side that most of them lie on.
-double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3d> positions) {
-  const Surface& moving_part = constrained.moving_part.surface();
+/// Distances of points from the moving part, positive outside.
+std::vector<double> signed_distances(const ConstrainedSurface& constrained, const std::vector<Vec3d>& points) {
+  const std::vector<Closest> closest = closest_points(constrained.moving_part, points);
+  std::vector<double> distances;
+  distances.reserve(closest.size());
+  for (std::size_t i = 0; i < closest.size(); ++i) {
+    const auto& [d, triangle, feature, tied, point] = closest[i];
+    const Vec3d out = constrained.moving_part.surface().pseudonormal(triangle, feature);
+    distances.push_back(out.dot(points[i] - point) < 0 ? -d : d);
+  }
+  return distances;
+}
+
+/// The distance that half of the moved faces' area is below, each face at its middle.
+double median_of_faces(const ConstrainedSurface& constrained, std::span<const Vec3d> positions) {
+  const Surface& surface = constrained.surface;
+  std::vector<Vec3d> middles;
+  std::vector<double> area;
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!constrained.triangle_on_part(t) || constrained.is_obstacle(t)) continue;
+    const auto& [a, b, c] = surface.triangles[t];
+    middles.push_back((positions[a] + positions[b] + positions[c]) / 3 - surface.origin);
+    area.push_back((positions[b] - positions[a]).cross(positions[c] - positions[a]).length());
+  }
+  const std::vector<double> distances = signed_distances(constrained, middles);
+  std::vector<std::uint32_t> order(distances.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](auto s, auto t) { return std::pair(distances[s], s) < std::pair(distances[t], t); });
+  double left = std::accumulate(area.begin(), area.end(), 0.0) / 2;
+  for (const auto t : order)
+    if ((left -= area[t]) <= 0) return distances[t];
+  return 0;
+}
+
+/// The distance of an offset that does not say it: the median of the moving part's vertices, with the sign of the side
+/// that most of them lie on. With miters, of those alone that are about where most of the faces' area is; where hardly
+/// any vertex is, as on a box, that of the faces.
+double find_distance(const ConstrainedSurface& constrained, std::span<const Vec3d> positions, Corners corners) {
+  constexpr double kAlike = 0.02, kHardlyAny = 0.1;  // of the distance, and of the vertices; not measured
   std::vector<Vec3d> points;
   for (std::uint32_t v = 0; v < positions.size(); ++v)
-    if (constrained.vertex_on_part(v)) points.push_back(positions[v] - moving_part.origin);
-  const std::vector<Closest> closest = closest_points(constrained.moving_part, points);
-  std::vector<double> distance;
-  distance.reserve(closest.size());
-  std::ptrdiff_t outside = 0;
-  for (std::size_t v = 0; v < closest.size(); ++v) {
-    const auto& [d, triangle, feature, tied, point] = closest[v];
-    distance.push_back(d);
-    outside += moving_part.pseudonormal(triangle, feature).dot(points[v] - point) < 0 ? -1 : 1;
+    if (constrained.vertex_on_part(v)) points.push_back(positions[v] - constrained.moving_part.surface().origin);
+  std::vector<double> distances = signed_distances(constrained, points);
+  const auto all = static_cast<double>(distances.size());
+  if (corners == Corners::Miter) {
+    const double by_faces = median_of_faces(constrained, positions);
+    std::erase_if(distances, [&](double d) { return !(std::abs(d - by_faces) <= kAlike * std::abs(by_faces)); });
+    if (static_cast<double>(distances.size()) < std::max(1.0, kHardlyAny * all)) return by_faces;
   }
-  return outside < 0 ? -median(distance) : median(distance);
+  const bool is_inward = 2 * std::count_if(distances.begin(), distances.end(), [](double d) { return d < 0; }) >
+                         static_cast<std::ptrdiff_t>(distances.size());
+  for (double& d : distances) d = std::abs(d);
+  return is_inward ? -median(distances) : median(distances);
 }
 
 /// The miters of the vertices of all parts, the ends of borders that slide, and how far from the moving part each
@@ -348,7 +387,9 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   if (!options.metric.even()) constrained.file = &file;
   if (has_tolerance(options)) constrained.vertex_error = surface.vertex_error;
   result.torn = count_torn(surface, mesh, positions, options.precision);
-  result.distances = options.distance ? *options.distance : Distances(find_distance(constrained, in_offset));
+  result.distances = options.distance
+                         ? *options.distance
+                         : Distances(find_distance(constrained, in_offset, options.corners.value_or(Corners::Miter)));
   std::size_t disagreeing = 0;
   const Distances distances = distances_on_parts(parts, options.border, result.distances, disagreeing);
   result.distances = distances_of_input(surface, distances);

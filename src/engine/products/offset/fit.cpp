@@ -369,7 +369,7 @@ class Fitting {
     for (std::size_t v = 0; v < best.positions.size(); ++v) {
       if (best.positions[v] == mesh_.positions[v]) continue;
       ++facts.moved;
-      facts.deepest = std::max(facts.deepest, best.achieved[v]);
+      facts.deepest = std::max(facts.deepest, (best.positions[v] - mesh_.positions[v]).length());
     }
     facts.gap = least_gap(best.positions);
     facts.enclosed = count_enclosed(best.positions);

@@ -91,16 +91,22 @@ std::vector<OpenCurve> open_curves(CurvesView curves) {
   std::vector<std::uint8_t> degree(plane.points.size(), 0);
   for (const Segment& segment : segments)
     for (const auto p : segment) degree[p] = static_cast<std::uint8_t>(std::min(degree[p] + 1, 3));
+  // Of each point a segment that begins there. A chain's segments may begin anywhere on it, where a piece of the file
+  // does.
+  std::vector<std::uint32_t> begins(plane.points.size(), kNone);
+  for (std::uint32_t s = 0; s < segments.size(); ++s) begins[segments[s][0]] = s;
   std::vector<OpenCurve> open;
-  for (std::size_t first = 0, last = 0; first < segments.size(); first = last) {
+  for (const Segment& first : segments) {
+    const std::uint32_t from = first[0];
+    if (degree[from] != 1) continue;
+    std::uint32_t to = from;
     double length = 0;
-    do {
-      length += (plane.points[segments[last][1]] - plane.points[segments[last][0]]).length();
-      ++last;
-    } while (last < segments.size() && segments[last][0] == segments[last - 1][1] && degree[segments[last][0]] == 2);
-    const std::uint32_t from = segments[first][0], to = segments[last - 1][1];
-    if (degree[from] == 1 && degree[to] == 1)
-      open.push_back({from, to, length, (plane.points[to] - plane.points[from]).length()});
+    while (to == from || (degree[to] == 2 && begins[to] != kNone)) {
+      const Segment& segment = segments[begins[to]];
+      length += (plane.points[segment[1]] - plane.points[segment[0]]).length();
+      to = segment[1];
+    }
+    if (degree[to] == 1) open.push_back({from, to, length, (plane.points[to] - plane.points[from]).length()});
   }
   return open;
 }
