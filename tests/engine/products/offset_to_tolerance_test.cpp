@@ -770,15 +770,15 @@ TEST_CASE("tolerance: where the source crosses itself, pieces of no more faces m
 }
 
 TEST_CASE("tolerance: what crosses by rounding alone is the refined source's, and not the source's", "[tolerance]") {
-  // Two cubes, tilted, with a gap of two units of the last digit.
+  // Two cubes, tilted, with a gap of one unit of the last digit or two.
   const Polygons cube = triangles_of(shapes::box(Vec3d(1), 1, false));
   const Rounding single(Precision{.kind = Precision::Kind::Single});
   Polygons mesh;
-  for (const double z : {0.0, 1 + 4e-7}) {
+  for (const double z : {0.0, 1 + 3e-7}) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (const Vec3d& at : cube.positions) {
       const Vec3d p = at + Vec3d(0.5);
-      const double x = p[0] * std::cos(0.3) - p[1] * std::sin(0.3), y = p[0] * std::sin(0.3) + p[1] * std::cos(0.3),
+      const double x = p[0] * std::cos(0.2) - p[1] * std::sin(0.2), y = p[0] * std::sin(0.2) + p[1] * std::cos(0.2),
                    up = p[2] + z;
       mesh.positions.push_back(
           single(Vec3d(x + 3, y * std::cos(0.7) - up * std::sin(0.7) + 3, y * std::sin(0.7) + up * std::cos(0.7) + 3)));
@@ -916,12 +916,12 @@ TEST_CASE("tolerance: near creases on the inside hardly anything is left", "[tol
 }
 
 TEST_CASE("tolerance: halves that are folded are split in turn", "[tolerance][long][no_races]") {
-  // Sharp valleys between few faces. With triangles that stay whole where their halves are folded: 82.9 %.
+  // Sharp valleys between few faces. With triangles that stay whole where their halves are folded: 82.1 %.
   const Polygons mesh = shapes::bumpy_sphere(1, 0.6, 4, 1, 3);
   const RefinedOffset refined =
       offset_to_tolerance(mesh.view(), options_for(0.05 * diagonal_of(mesh)), tolerance_of(0.01));
   CHECK(certified_of(refined).there == Approx(1).epsilon(1e-3));
-  CHECK(certified_of(refined).certified > 0.84);
+  CHECK(certified_of(refined).certified > 0.83);
   CHECK(refined.result.statistics.limit.left.total() == 0);
 }
 

@@ -119,9 +119,9 @@ TEST_CASE("warm start: what could not be freed is held back at less, too, and to
   }
 }
 
-TEST_CASE("warm start: states are honest where much is held back and eased", "[warm_start][several][long]") {
+TEST_CASE("warm start: states are honest where much is held back and fades", "[warm_start][several][long]") {
   const Polygons mesh = shapes::gear(18, 0.8, 1, 0.3, 0.3, 6);
-  const std::vector<Distances> distances = {-0.06, -0.08, -0.11, -0.11};  // the last two are equal
+  const std::vector<Distances> distances = {-0.06, -0.08, -0.125, -0.125};  // the last two are equal
   const std::vector<OffsetResult> results = offset_several(mesh.view(), distances, round_corners());
   CHECK(short_vertices(results[2]) > 0);
   for (std::size_t i = 0; i < distances.size(); ++i) {
