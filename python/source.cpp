@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "source.h"
 
-#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,18 +20,14 @@ Source::Source(Input input, const py::object& vertices, const py::object& faces,
 
 void Source::close_curves() {
   const CurvesView given = arrays_.view();
-  const std::vector<OpenCurve> open = open_curves(given);
   Curves curves;
   curves.positions.assign(given.positions.begin(), given.positions.end());
   curves.corners.assign(given.corners.begin(), given.corners.end());
   curves.face_begin.assign(given.face_begin.begin(), given.face_begin.end());
-  if (!vdb_offset::close_curves(curves).empty()) {
-    closed_ = std::move(curves);
-  } else if (!open.empty()) {
-    std::ostringstream text;
-    text << "close: expected a curve whose ends are nearer to each other than " << OpenCurve::kNearlyClosed
-         << " of its length, got " << open.front().gap << " of " << open.front().length;
-    throw InvalidInput(text.str());
+  try {
+    if (!vdb_offset::close_curves(curves).empty()) closed_ = std::move(curves);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(std::string("close: ") + error.what());
   }
 }
 

@@ -81,7 +81,8 @@ struct VDB_OFFSET_API OpenCurve {
 /// The curves with two ends, in the order of their chains. \throw as chains_in_plane()
 VDB_OFFSET_API std::vector<OpenCurve> open_curves(CurvesView curves);
 
-/// Closes the curves that are nearly closed, by a straight segment. Returns these, as they were.
+/// Closes the curves that are nearly closed, by a straight segment, and leaves other open ones. Returns the former, as
+/// they were. \throw InvalidInput where all curves are open afterwards, as chains_in_plane()
 VDB_OFFSET_API std::vector<OpenCurve> close_curves(Curves& curves);
 
 /// The surface that a mesh is a tessellation of, as far as an offset needs it: that of a CAD model. All spans are as

@@ -543,6 +543,9 @@ TEST_CASE("command: what is misspelt or missing is named, with what is meant", "
         {"--xyz", "unknown option --xyz (vdb_offset --help all lists the options)"},
         {in_out + "-d 1 -w", "unknown option -w (vdb_offset --help all lists the options)"},
         {in_out + "-d 1 more", "not expected: more"},
+        {in_out + "-d 0.2 mm", "mm: expected the unit without a space, as in 0.2mm"},
+        {in_out + "--offset 1", "unknown option --offset; did you mean --distance?"},
+        {"--help corner", "--help: expected distances, accuracy, "},
         {"check sphere.obj sphere.obj --stric", "unknown option --stric; did you mean --strict?"},
         {"check sphere.obj sphere.obj --layers 1", "unknown option --layers (vdb_offset check --help all lists"},
         {"batch . out -d 1 --model x", "unknown option --model; did you mean --models?"},
@@ -552,6 +555,9 @@ TEST_CASE("command: what is misspelt or missing is named, with what is meant", "
         {"cheque out.obj -d 1", "cheque: expected an input that ends in"}})
     check_failure(shell, arguments, 1, message);
   CHECK(shell("--distance-xyz --help").code == 0);
+  CHECK(shell(in_out + "-d=0.1 -q").code == 0);
+  CHECK(shell(in_out + "-d=-1% -q").code == 0);
+  CHECK_THAT(shell("--help corners").out, Catch::Contains("--corners KIND") && !Catch::Contains("--miter-limit L"));
   // A file of nearly such a name is one.
   std::ofstream(shell.file("patch")) << shell.slurp(shell.file("sphere.obj"));
   CHECK(shell("patch out.obj -d 0.1 --format obj -q").code == 0);

@@ -74,7 +74,7 @@ class Curves(BesideTheCommand):
         self.assertTrue((check.states == closed.states).all())
 
     def test_close_what_is_not_nearly_closed(self):
-        with self.assertRaisesRegex(vdb_offset.InvalidInput, "close: expected a curve whose ends are nearer"):
+        with self.assertRaisesRegex(vdb_offset.InvalidInput, "close: expected a closed curve, or ends nearer"):
             vdb_offset.offset_curves(L_SHAPE, (np.array([0, 4]), np.arange(4)), 0.1, close=True)
         with self.assertRaisesRegex(vdb_offset.InvalidOption, "close: expected True or False"):
             vdb_offset.offset_curves(WEDGE, OPEN, 0.1, close="yes")

@@ -20,6 +20,7 @@
 #include "offset_command.h"
 #include "outputs.h"
 #include "page/view_command.h"
+#include "request/presets.h"
 #include "request/request.h"
 #include "source.h"
 #include "terminal.h"
@@ -69,7 +70,7 @@ ExitCode run(const Request& request) {
   bar.show(Stage::Read, 0);
   const Source source = read_source(request, curves, bar.callback());
   Job job = resolve(request, source);
-  bar.expect_writing(writing_share(job));
+  bar.expect_writing(writing_share(job), is_cad_output(request.output, request) ? "building the CAD model" : "writing");
   job.options.progress = bar.callback();
   if (of_batch) {
     if (source.scene && !source.scene->mesh_path.empty()) report_file_read(source.scene->mesh_path);
@@ -91,7 +92,7 @@ int run(int argc, char** argv) {
   if (is_view(argc, argv)) return run_view(argc, argv);
   if (is_batch(argc, argv)) return run_batch(argc, argv);
   const auto request = parse_command_line(argc, argv);
-  return request ? run(*request) : kDone;
+  return request ? explaining_presets(request->of_preset, [&] { return run(*request); }) : kDone;
 }
 
 int guarded(int argc, char** argv) {

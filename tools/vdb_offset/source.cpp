@@ -28,17 +28,15 @@ void add(Polygons& to, const Polygons& from) {
   }
 }
 
-/// Closes the curves with ends near each other. \throw InvalidInput if there are open curves, but none of this kind
+/// Closes the curves with ends near each other. \throw InvalidInput if all curves stay open
 void close_curves(const Request& request, Source& source) {
   Curves curves = source.curves->file.polygons;
-  const std::vector<OpenCurve> open = open_curves(curves.view());
-  source.closed = vdb_offset::close_curves(curves);
+  try {
+    source.closed = vdb_offset::close_curves(curves);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: --close: {}", request.input, error.what()));
+  }
   if (!source.closed.empty()) source.as_closed = std::move(curves);
-  else if (!open.empty())
-    throw InvalidInput(
-        fmt::format("{}: --close: expected a curve whose ends are nearer to each other than {:g} of its "
-                    "length, got {:.6g} of {:.6g}",
-                    request.input, OpenCurve::kNearlyClosed, open.front().gap, open.front().length));
 }
 
 }  // namespace

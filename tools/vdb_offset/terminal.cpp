@@ -63,10 +63,10 @@ const char* in_words(Stage stage) {
       return "stacking layers";
     case Stage::Measure:
       return "measuring";
-    case Stage::Write:
-      return "writing";
+    case Stage::Write:  // the bar has been told what to call it
+      break;
   }
-  return "";
+  return "writing";
 }
 
 }  // namespace
@@ -106,8 +106,9 @@ void ProgressBar::show(Stage stage, double share) {
   constexpr int kWidth = 40;  // characters
   const double of_run = shown_share_ = std::max(shown_share_, share_of_run(stage, share));
   const int filled = static_cast<int>(of_run * kWidth);
-  std::string line = fmt::format("[{:#<{}}{:.<{}}] {:3.0f} %  {}{}", "", filled, "", kWidth - filled,
-                                 std::floor(100 * of_run), in_words(stage), time_left(of_run));
+  std::string line =
+      fmt::format("[{:#<{}}{:.<{}}] {:3.0f} %  {}{}", "", filled, "", kWidth - filled, std::floor(100 * of_run),
+                  stage == Stage::Write ? writing_ : in_words(stage), time_left(of_run));
   if (line == shown_) return;
   print(fmt::format("\r{:{}}", line, shown_.size()));
   shown_ = std::move(line);

@@ -24,8 +24,11 @@ class ProgressBar {
 
   /// How much of the run reading takes, as a share of it.
   void expect_reading(double share) { read_until_ = share; }
-  /// Once all is read: how much of the rest writing takes, as a share of that.
-  void expect_writing(double share) { work_until_ = read_until_ + (1 - read_until_) * (1 - share); }
+  /// Once all is read: how much of the rest writing takes, as a share of that, and what it is to be called.
+  void expect_writing(double share, const char* called = "writing") {
+    work_until_ = read_until_ + (1 - read_until_) * (1 - share);
+    writing_ = called;
+  }
 
   /// Of work that is several calls of the library: of which part of it shares are from here on.
   void expect_work_between(double from, double to) { work_part_ = {from, to}; }
@@ -52,7 +55,8 @@ class ProgressBar {
 
   bool active_;
   double read_until_ = 0.05, work_until_ = 0.95;  ///< Shares of the run.
-  std::pair<double, double> work_part_{0, 1};     ///< Shares of the work.
+  const char* writing_ = "writing";
+  std::pair<double, double> work_part_{0, 1};  ///< Shares of the work.
   Clock::time_point begun_ = Clock::now();
   std::deque<std::pair<double, double>> shares_;  ///< Of the run, after so many seconds: the latest half of the time.
   double shown_share_ = 0;

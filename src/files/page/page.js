@@ -324,7 +324,9 @@
     return;
   }
   modes = COLOURS.modes(facts, data);
-  looks.colour = isAlone && modes.group && facts.groups.length > 1 ? 'group' : Object.keys(modes)[0];
+  // Vertices on sharp edges are farther than the distance, so that the faces between them can be at it.
+  const hasMiters = facts.states.some((name, s) => name === 'mitered' && facts.surfaces.some(each => each.states && each.states[s] > 0));
+  looks.colour = isAlone && modes.group && facts.groups.length > 1 ? 'group' : hasMiters && modes.error ? 'error' : Object.keys(modes)[0];
   addControls();
   const showAll = make('button', byId('tools'), 'Show all', {type: 'button', title: 'Reset the view (Home)'});
   showAll.addEventListener('click', () => view.showAll());

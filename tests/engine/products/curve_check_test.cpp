@@ -197,7 +197,13 @@ TEST_CASE("curve ends: far from each other, or of several pieces", "[curves]") {
   Curves arc = curve_through({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, false);
   CHECK(open_curves(arc.view()).size() == 1);
   CHECK_FALSE(open_curves(arc.view())[0].is_nearly_closed());
-  CHECK(close_curves(arc).empty());
+  CHECK_THROWS_WITH(close_curves(arc), Catch::Contains("expected a closed curve, or ends nearer to each other"));
+  // One that is closed by itself beside it is all that there has to be.
+  Curves both = arc;
+  both.positions.insert(both.positions.end(), {{5, 0, 0}, {6, 0, 0}, {6, 1, 0}});
+  both.add_face({3, 4, 5, 3});
+  CHECK(close_curves(both).empty());
+  CHECK(open_curves(both.view()).size() == 1);
   // Two pieces that go on as one, the second of which runs back.
   Curves pieces;
   pieces.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0.1, 0}};

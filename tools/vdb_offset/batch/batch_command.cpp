@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -99,7 +100,7 @@ class Batch {
   std::size_t left_out_;  // folders
   Table table_;
   std::vector<std::size_t> to_do_;
-  std::size_t kept_ = 0, done_ = 0, failed_ = 0;
+  std::size_t kept_ = 0, done_ = 0, warned_ = 0, failed_ = 0;
 };
 
 /// Finds out which models are done already, with the same content and options.
@@ -156,6 +157,8 @@ void Batch::end(std::size_t model, const Record& record, ProgressLine& progress)
   table_.add(model, rows);
   const int code = record.ending.exit_code;
   ++(code == 0 ? done_ : failed_);
+  if (code == 0 && std::ranges::any_of(record.figures, [](const auto& each) { return !each.warning.empty(); }))
+    ++warned_;
   progress.count(work_of(model), code != 0);
   progress.clear();
   if (code != 0) report_problem(fmt::format("{}: failed ({}): {}", models_[model].path, code, record.ending.message));
@@ -189,6 +192,7 @@ ExitCode Batch::run(const RunMark& mark) {
 
 void Batch::print_summary(double seconds) const {
   std::string line = fmt::format("{}: {}: {} offset", table_.path(), models_in_words(models_.size()), done_);
+  if (warned_ > 0) line += fmt::format(" ({} with a warning, in the column 'message')", warned_);
   if (kept_ > 0) line += fmt::format(", {} already up to date", kept_);
   if (failed_ > 0) line += fmt::format(", {} failed", failed_);
   fmt::print(Printout(), "{} ({})\n", line, time_in_words(seconds));

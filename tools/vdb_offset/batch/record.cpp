@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kRecordVersion = 2;
+constexpr int kRecordVersion = 3;
 
 std::string path_of_record(const std::string& out, const Model& model) {
   return fmt::format("{}/{}.json", folder_of_records(out), state_name(model));
@@ -64,7 +64,9 @@ Record::Figures figures_of(const json& report) {
           .share_reached = figure(report, "/achieved/share_reached"),
           .mean_error = figure(report, (at + "/faces/mean_error").c_str()),
           .within_1_percent = figure(report, (at + "/faces/share_within_1_percent").c_str()),
-          .certified = figure(report, "/certified/certified")};
+          .certified = figure(report, "/certified/certified"),
+          .new_crossings = figure(report, at.empty() ? "/limit/left/crossings" : "/surface/crossings"),
+          .warning = figure(report, "/warnings/0/text")};
 }
 
 std::int64_t size_of(const std::string& path) {
@@ -77,8 +79,8 @@ std::int64_t size_of(const std::string& path) {
 json to_json(const Record& record) {
   json figures = json::array(), besides = json::array();
   for (const Record::Figures& each : record.figures)
-    figures.push_back(
-        {each.distance, each.vertices, each.share_reached, each.mean_error, each.within_1_percent, each.certified});
+    figures.push_back({each.distance, each.vertices, each.share_reached, each.mean_error, each.within_1_percent,
+                       each.certified, each.new_crossings, each.warning});
   for (const std::string& path : record.read_besides) besides.push_back(as_digits(path));
   const Ending& ending = record.ending;
   return {{"version", kRecordVersion}, {"batch", record.batch},        {"key", record.key},
@@ -98,8 +100,8 @@ Record from_json(const json& text) {
                 .sizes = text.at("sizes").get<std::vector<std::int64_t>>()};
   for (const json& path : text.at("read_besides")) record.read_besides.push_back(from_digits(path.get<std::string>()));
   for (const json& each : text.at("figures")) {
-    const auto texts = each.get<std::array<std::string, 6>>();
-    record.figures.push_back({texts[0], texts[1], texts[2], texts[3], texts[4], texts[5]});
+    const auto texts = each.get<std::array<std::string, 8>>();
+    record.figures.push_back({texts[0], texts[1], texts[2], texts[3], texts[4], texts[5], texts[6], texts[7]});
   }
   return record;
 }

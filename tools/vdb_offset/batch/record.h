@@ -39,7 +39,8 @@ struct Record {
   Ending ending;
   /// What the reports say, for the table: for each distance, texts by the names of columns.
   struct Figures {
-    std::string distance, vertices, share_reached, mean_error, within_1_percent, certified;
+    std::string distance, vertices, share_reached, mean_error, within_1_percent, certified, new_crossings;
+    std::string warning;  ///< The gravest; empty: none.
   };
   std::vector<Figures> figures;
   std::vector<std::int64_t> sizes;  ///< Of the files written, in their order; -1: none, or a folder.

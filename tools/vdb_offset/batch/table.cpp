@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kHeading =
     "model,distance,seconds,memory_mib,vertices,share_reached,faces_mean_error,faces_within_1_percent,faces_certified,"
-    "exit_code,message\n";
+    "new_crossings,exit_code,message\n";
 
 std::string quoted(const std::string& text) {
   std::string field = "\"";
@@ -52,11 +52,11 @@ std::string rows_of(const Model& model, const Record& record) {
   const std::vector<Record::Figures> none(1);
   std::string rows;
   for (const Record::Figures& figures : record.figures.empty() ? none : record.figures)
-    rows += fmt::format("{},{},{:.3f},{:.0f},{},{},{},{},{},{},{}\n", quoted(no_formula(as_text(model.path))),
+    rows += fmt::format("{},{},{:.3f},{:.0f},{},{},{},{},{},{},{},{}\n", quoted(no_formula(as_text(model.path))),
                         field_of_distance(figures.distance), ending.seconds,
                         static_cast<double>(ending.peak_memory) / 1048576.0, figures.vertices, figures.share_reached,
-                        figures.mean_error, figures.within_1_percent, figures.certified, ending.exit_code,
-                        field(ending.message));
+                        figures.mean_error, figures.within_1_percent, figures.certified, figures.new_crossings,
+                        ending.exit_code, field(ending.message.empty() ? figures.warning : ending.message));
   return rows;
 }
 

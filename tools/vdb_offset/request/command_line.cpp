@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <numeric>
 #include <sstream>
@@ -29,6 +30,13 @@ constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance
                                     "first-height", "total-thickness", "voxel-size",    "tolerance", "weld",
                                     "flatten",      "deflection",      "fit-tolerance", "blend"};
 
+// What other programs call it, and the option that is meant.
+constexpr std::pair<std::string_view, std::string_view> kCalledOtherwise[] = {{"--offset", "distance"},
+                                                                              {"--thickness", "distance"},
+                                                                              {"--amount", "distance"},
+                                                                              {"--join", "corners"},
+                                                                              {"--hollow", "shell"}};
+
 // In the place of a preset's name.
 constexpr const char* kAllPresets = "help";
 
@@ -44,6 +52,11 @@ std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
       if (name->starts_with('-') && *name != "-") name->insert(0, "./");
     arguments.erase(mark);
   }
+  // -d=1 is -d 1: CLI11 has the sign for a part of the value. In an expression, as -x==1, it stands twice.
+  for (std::string& word : arguments)
+    if (word.size() > 3 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0 && word[2] == '=' &&
+        word[3] != '=')
+      word.erase(2, 1);
   std::reverse(arguments.begin(), arguments.end());
   return arguments;
 }
@@ -124,22 +137,39 @@ void CommandLine::list_for(const std::string& topic) {
   for (const HelpTopic& each : topics_)
     for (const std::string& name : each.options)
       if (CLI::Option* const option = app_->get_option_no_throw("--" + name))
-        option->group(topic == "all" || topic == each.name ? each.title : "");
+        option->group(topic == "all" || topic == each.name || topic == name ? each.title : "");
   if (!topic.empty()) return;
   for (const std::string& name : first_options_) app_->get_option("--" + name)->group("Options");
 }
 
-bool CommandLine::print_help(const std::vector<std::string>& reversed) {
-  const auto asked = std::find_if(reversed.rbegin(), reversed.rend(),
-                                  [](const std::string& word) { return word == "-h" || word == "--help"; });
-  if (asked == reversed.rend()) return false;
-  const auto is_topic = [this](const std::string& word) {
-    return word == "all" || std::ranges::any_of(topics_, [&](const HelpTopic& each) { return each.name == word; });
-  };
-  const std::string topic = asked + 1 != reversed.rend() && is_topic(asked[1]) ? asked[1] : "";
+bool CommandLine::is_topic(const std::string& word) const {
+  return word == "all" || std::ranges::any_of(topics_, [&](const HelpTopic& each) {
+           return each.name == word ||
+                  (app_->get_option_no_throw("--" + word) && std::ranges::count(each.options, word));
+         });
+}
+
+void CommandLine::print_help(std::string topic) {
+  if (topic.starts_with("--")) topic.erase(0, 2);
+  if (!is_topic(topic)) topic.clear();
   list_for(topic);
   app_->footer(topic.empty() ? more_of_first_ : topic == "all" ? more_of_all_ : "");
   fmt::print(Printout(), "{}", app_->help());
+}
+
+bool CommandLine::answer_help(const std::vector<std::string>& reversed) {
+  const auto asked = std::find_if(reversed.rbegin(), reversed.rend(),
+                                  [](const std::string& word) { return word == "-h" || word == "--help"; });
+  if (asked == reversed.rend()) return false;
+  const std::string topic = asked + 1 == reversed.rend() ? "" : asked[1];
+  // Behind it nothing but a word that names neither a topic nor an option, nor a file.
+  if (reversed.size() == 2 && asked == reversed.rbegin() && !topics_.empty() && !topic.starts_with('-') &&
+      !is_topic(topic) && topic.find_first_of("./") == std::string::npos) {
+    std::string topics;
+    for (const HelpTopic& each : topics_) topics += fmt::format("{}, ", each.name);
+    throw UsageError(fmt::format("--help: expected {}all or the name of an option, got '{}'", topics, topic));
+  }
+  print_help(topic);
   return true;
 }
 
@@ -188,10 +218,14 @@ bool CommandLine::understand(std::vector<std::string> reversed) {
 /// \throw UsageError for a word that looks like an option and is none, with the one that is meant
 void CommandLine::require_known_options() const {
   for (const std::string& word : app_->remaining()) {
+    require(!micrometres_of(word), fmt::format("{0}: expected the unit without a space, as in 0.2{0}", word));
     if (!word.starts_with('-') || word == "-") continue;
     const std::string name = word.substr(0, word.find('='));
     std::string meant;
-    std::pair nearest(true, kMostEdits + 1);  // whether it begins otherwise, and by how many letters it differs
+    for (const auto& [called, option] : kCalledOtherwise)
+      if (called == name && app_->get_option_no_throw("--" + std::string(option))) meant = option;
+    // Whether it begins otherwise, and by how many letters it differs.
+    std::pair nearest(true, meant.empty() ? kMostEdits + 1 : 0);
     for (const CLI::Option* const option : app_->get_options())
       for (const std::string& known : option->get_lnames()) {
         const std::pair far(!("--" + known).starts_with(name), edits_between(name, "--" + known));
@@ -277,7 +311,7 @@ std::string CommandLine::text_of(const CLI::Option& option, const std::string& g
   };
   const std::size_t at = is_of_part ? given.rfind(':') + 1 : 0;
   std::optional<Lengths> found;
-  std::string text = given.substr(0, at) + in_file_units("--" + name, given.substr(at), file_unit, found);
+  std::string text = given.substr(0, at) + in_file_units("--" + name, given.substr(at), *measured_, file_unit, found);
   if (found && number < lengths_by_) {
     *lengths_ = *found;
     lengths_by_ = number;
@@ -287,7 +321,7 @@ std::string CommandLine::text_of(const CLI::Option& option, const std::string& g
 
 bool CommandLine::parse(int argc, const char* const* argv) {
   std::vector<std::string> reversed = reversed_arguments(argc, argv);
-  if (print_help(reversed)) return false;
+  if (answer_help(reversed)) return false;
   if (!understand(reversed)) return false;
   require_values();
   const auto add = [&](const std::vector<ConfigEntry>& entries) {
@@ -300,7 +334,13 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   };
   if (!config_.empty() && !add(read_config(config_))) return false;
   // One that the file names counts as well, and what the file says itself comes first.
-  if (!preset_.empty()) add(parse_config("--preset " + preset_, std::string(preset_of(preset_).text)));
+  if (!preset_.empty()) {
+    const GivenNames without = given();
+    add(parse_config("--preset " + preset_, std::string(preset_of(preset_).text)));
+    for (const std::string& name : given())
+      if (!without.contains(name) && name.find(' ') == std::string::npos)
+        of_preset_.push_back({name, app_->get_option(name)->get_expected_max() == 0, preset_});
+  }
   for (const Value& value : values_) {
     if (value.option->count() == 0) continue;
     if (value.texts.empty()) value.take(text_of(*value.option, value.text));

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "request/presets.h"
 #include "request/request.h"
 
 namespace CLI {
@@ -65,7 +66,7 @@ class CommandLine {
   /// `lengths` get the unit of the distance, or else of another length, or else of the file as far as it is given.
   void add_unit(std::string& unit, const std::string& input, Lengths& lengths);
   /// --help lists those of `options` alone and says `more`, and which topics there are; `--help TOPIC` lists the
-  /// options of a topic, and `--help all` those of all, by their topics. `options` lives as long as this.
+  /// options of a topic, `--help OPTION` one, and `--help all` those of all, by their topics.
   void arrange_help(std::span<const HelpTopic> topics, std::vector<std::string> options, std::string more);
   /// What is declared from here on is not listed in --help.
   void hide_what_follows() { hidden_ = true; }
@@ -103,6 +104,8 @@ class CommandLine {
   std::optional<std::string> given_besides(std::span<const char* const> known) const;
   /// The file of --config; empty if none was given.
   const std::string& config() const { return config_; }
+  /// The options that a preset gave.
+  const std::vector<PresetOption>& of_preset() const { return of_preset_; }
   /// The hidden options that were given, those with several values once for each.
   std::vector<GivenOption> given_hidden() const;
 
@@ -114,8 +117,12 @@ class CommandLine {
     Take take;
   };
   bool understand(std::vector<std::string> reversed);
-  /// Prints what --help asks for if it is among the words. Returns whether it was.
-  bool print_help(const std::vector<std::string>& reversed);
+  /// Prints what --help asks for if it is among the words. Returns whether it was. \throw UsageError
+  bool answer_help(const std::vector<std::string>& reversed);
+  /// The options of a topic, one option by its name, or for any other word the first screen.
+  void print_help(std::string topic);
+  /// Whether --help has a list for the word: that of a topic, all, or one option.
+  bool is_topic(const std::string& word) const;
   /// Puts each option that is to be listed under a title, and takes all others off the list.
   void list_for(const std::string& topic);
   /// What a file of options says of those that were not given, as words. \throw UsageError
@@ -130,6 +137,7 @@ class CommandLine {
   std::unique_ptr<CLI::App> app_;
   const char* help_;
   std::string config_, preset_;
+  std::vector<PresetOption> of_preset_;
   std::vector<std::string> alternatives_, passed_over_, kept_out_;
   const std::string *unit_ = nullptr, *measured_ = nullptr;
   Lengths* lengths_ = nullptr;

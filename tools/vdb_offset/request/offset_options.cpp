@@ -378,11 +378,14 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   require_no_command(argc, argv);
   if (!line.parse(argc, argv)) return std::nullopt;
   draft.request.given = line.given();
-  require_together(draft.request.given);
-  complete(draft);
+  draft.request.of_preset = line.of_preset();
   draft.request.command = as_typed(argc, argv);
   draft.request.config = line.config();
-  require_sound(draft.request);
+  explaining_presets(line.of_preset(), [&] {
+    require_together(draft.request.given);
+    complete(draft);
+    require_sound(draft.request);
+  });
   return draft.request;
 }
 

@@ -27,4 +27,20 @@ std::string presets_in_words() {
   return text + "\nTo change one, copy it to a file of your own and give that with --config.\n";
 }
 
+std::string explained(std::string problem, const std::vector<PresetOption>& options) {
+  const auto is_named = [&](const PresetOption& option) {
+    // As a whole word: --fit is not part of --fit-tolerance.
+    for (std::size_t at = problem.find(option.name); at != std::string::npos; at = problem.find(option.name, at + 1)) {
+      const std::size_t end = at + option.name.size();
+      if (end == problem.size() || std::string_view(" ,:;.)").find(problem[end]) != std::string_view::npos) return true;
+    }
+    return false;
+  };
+  const auto found = std::ranges::find_if(options, is_named);
+  if (found != options.end())
+    problem += fmt::format(" ({} comes from --preset {}{})", found->name, found->preset,
+                           found->is_flag ? fmt::format("; without it: {}=false", found->name) : "");
+  return problem;
+}
+
 }  // namespace vdb_offset::tool

@@ -4,6 +4,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "request/request.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 
@@ -18,5 +22,21 @@ const Preset& preset_of(const std::string& name);
 
 /// All of them, each with its text.
 std::string presets_in_words();
+
+/// What is wrong with options, and behind it the first of those of a preset that it names: nobody typed that.
+std::string explained(std::string problem, const std::vector<PresetOption>& options);
+
+/// Does what may find options wrong, by themselves or for an input, and explains those of a preset. \throw UsageError,
+/// InvalidInput
+template <class Work>
+auto explaining_presets(const std::vector<PresetOption>& options, Work work) {
+  try {
+    return work();
+  } catch (const UsageError& error) {
+    throw UsageError(explained(error.what(), options));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(explained(error.what(), options));
+  }
+}
 
 }  // namespace vdb_offset::tool

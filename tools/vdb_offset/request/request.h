@@ -26,6 +26,13 @@ struct UsageError : Error {
 /// The options that were given, by their long names, and again with each value, as in "--mode iso".
 using GivenNames = std::set<std::string>;
 
+/// An option that a preset gave, by its long name.
+struct PresetOption {
+  std::string name;
+  bool is_flag;
+  std::string preset;
+};
+
 /// One distance that is asked for, and how.
 struct DistanceRequest {
   std::string text;
@@ -73,6 +80,7 @@ struct ToleranceRequest {
 /// of the command line alone, as no file has been opened for it; resolve() makes a Job of it.
 struct Request {
   GivenNames given;
+  std::vector<PresetOption> of_preset;  ///< Those of them that a preset gave.
   std::string input, output;
   std::string config;                          ///< The file that options were taken from, too; empty: none.
   std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own, and for layers.

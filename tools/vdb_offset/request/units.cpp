@@ -42,7 +42,7 @@ std::string Lengths::volume(double volume) const {
                      have_unit() ? fmt::format(" {}³", unit_) : "");
 }
 
-std::string in_file_units(const std::string& option, const std::string& text,
+std::string in_file_units(const std::string& option, const std::string& text, const std::string& file,
                           const std::function<std::optional<double>()>& file_unit, std::optional<Lengths>& found) {
   // The longest name counts: 0.2mm is no number of metres with an m behind it.
   const std::size_t letters = text.find_last_not_of("umcintf") + 1;
@@ -53,8 +53,8 @@ std::string in_file_units(const std::string& option, const std::string& text,
   if (!given || !value) return text;
   const std::optional<double> of_file = file_unit();
   require(of_file.has_value(),
-          fmt::format("{}: '{}': the file does not state its unit; add --unit mm if its numbers are millimetres",
-                      option, text));
+          fmt::format("{}: '{}': {} does not state its unit; add --unit mm if its numbers are millimetres", option,
+                      text, file.empty() || file == "-" ? "the file" : file));
   found = Lengths(text.substr(letters), *of_file / *given);
   return *given == *of_file ? number : fmt::format("{}", *value * *given / *of_file);
 }

@@ -37,8 +37,9 @@ class Lengths {
 /// A text of an option without the unit behind its number, in units of the file: "0.2mm" is 0.2 where these are
 /// millimetres, and 0.0002 where they are metres. Texts without a unit stay as they are. `file_unit` is asked for that
 /// of the file, in micrometres, if there is a text with one. \throw UsageError for a unit where it is not known
+/// \param file its name, for that
 /// \param found gets the unit, if there is one
-std::string in_file_units(const std::string& option, const std::string& text,
+std::string in_file_units(const std::string& option, const std::string& text, const std::string& file,
                           const std::function<std::optional<double>()>& file_unit, std::optional<Lengths>& found);
 
 }  // namespace vdb_offset::tool

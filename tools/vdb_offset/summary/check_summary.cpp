@@ -27,18 +27,17 @@ void print_distances(std::FILE* out, const CheckResult& result, const Lengths& l
   const AchievedSummary achieved = summarise(result.states, result.achieved, result.distances);
   const auto in = [&](VertexState state) { return std::count(result.states.begin(), result.states.end(), state); };
   const auto mitered = in(VertexState::Mitered), cut = in(VertexState::Cut);
-  fmt::print(out, "distance    {}: {:.3f} % of {} {} there{}{}, {} beyond, {} on the wrong side\n",
-             lengths(result.distance, 9), 100 * achieved.share_reached, achieved.vertices, words_for(curves).vertices,
-             mitered > 0 ? fmt::format(", {} of them mitered", mitered) : "",
+  fmt::print(out, "distance    {}: {} % of {} {} there{}{}, {} beyond, {} on the wrong side\n",
+             lengths(result.distance, 9), area_percent(achieved.share_reached, 3), achieved.vertices,
+             words_for(curves).vertices, mitered > 0 ? fmt::format(", {} of them mitered", mitered) : "",
              cut > 0 ? fmt::format(", {} with a miter that is cut", cut) : "", result.beyond, result.wrong_side);
   fmt::print(out, "achieved    least {}, 1 % {}, 5 % {}, median {}, 95 % {}, most {}\n", lengths(achieved.least),
              lengths(achieved.quantile_01), lengths(achieved.quantile_05), lengths(achieved.median),
              lengths(achieved.quantile_95), lengths(achieved.most));
-  fmt::print(out,
-             "{}off by {:.3g} % on average, {:.3g} % at 99 of 100 points, {:.3g} % at most; {:.3g} % of the {} within "
-             "1 %\n",
-             words_for(curves).error_row, 100 * result.faces.mean, 100 * result.faces.quantile_99,
-             100 * result.faces.worst, 100 * result.faces.at_distance, curves ? "length" : "area");
+  fmt::print(
+      out, "{}off by {:.3g} % on average, {:.3g} % at 99 of 100 points, {:.3g} % at most; {} % of the {} within 1 %\n",
+      words_for(curves).error_row, 100 * result.faces.mean, 100 * result.faces.quantile_99, 100 * result.faces.worst,
+      area_percent(result.faces.at_distance, 1), curves ? "length" : "area");
 }
 
 void print_faults(std::FILE* out, const CheckResult& result, bool curves) {

@@ -108,6 +108,37 @@ void add_made_straight(const Source& source, const Lengths& lengths, Remarks& re
     remarks.add(Gravity::Detail, fmt::format("a gap of {} between a curve's ends was closed", lengths(closed.gap)));
 }
 
+/// Where a distance without a unit is in that of a drawing, and this is not the one that people think of.
+void add_unit_of_drawing(const Job& job, Remarks& remarks) {
+  const std::optional<double> unit = job.source.curves->file.unit_micrometres, mm = micrometres_of("mm");
+  if (!unit || *unit == *mm || job.request.lengths.have_unit() || job.request.distances.empty()) return;
+  const std::string& text = job.request.distances.front().text;
+  if (const auto number = decimal<double>(text))
+    remarks.add(Gravity::Input,
+                fmt::format("lengths without a unit are in the drawing's own, of {:.4g} mm: {} is {:.4g} "
+                            "mm. For millimetres: --distance {}mm",
+                            *unit / *mm, text, *number * *unit / *mm, text));
+}
+
+/// A distance that is many times the size of what is offset is often one in another unit.
+void add_too_far(double farthest, double diagonal, const Lengths& lengths, Remarks& remarks) {
+  constexpr double kMostDiagonals = 3;  // not measured: offsets that far are blobs
+  if (diagonal > 0 && farthest > kMostDiagonals * diagonal)
+    remarks.add(Gravity::Wrong,
+                fmt::format("the distance is {:.3g} times the diagonal, {}. If its unit is another one: "
+                            "--distance 1% does not depend on units",
+                            farthest / diagonal, lengths(diagonal)));
+}
+
+/// Lines that enclose nothing move as well, which may not be meant.
+void add_open_curves(const MeshFacts& facts, Remarks& remarks) {
+  if (const std::size_t open = facts.components - facts.closed_components; open > 0 && facts.closed_components > 0)
+    remarks.add(Gravity::Input,
+                fmt::format("{} of {} curves {} open and moved to the right of {} direction. To leave "
+                            "them where they are, take them out of the file",
+                            open, facts.components, open == 1 ? "is" : "are", open == 1 ? "its" : "their"));
+}
+
 /// Whether coordinates are kept to the last bit of a double.
 bool has_all_digits(const Job& job) {
   return !job.source.file || job.source.file->precision.kind == Precision::Kind::Double;
@@ -252,12 +283,16 @@ std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
 void add_input(const Job& job, const OffsetStatistics& statistics, const Distances& distances, Remarks& remarks) {
   const Lengths& lengths = job.request.lengths;
   const double farthest = std::abs(distances.farthest());
+  add_too_far(farthest, statistics.facts.diagonal, lengths, remarks);
   add_rounding(statistics.rounding, farthest, lengths, remarks);
   for (std::string& hint : side_hints(job, statistics.room)) remarks.add(Gravity::Wrong, std::move(hint));
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
   if (in(VertexState::Limited) + in(VertexState::Collision) > 0) add_slivers(statistics.facts, lengths, remarks);
-  if (job.curves()) add_made_straight(job.source, lengths, remarks);
-  else add_orientation(job, statistics.facts, remarks);
+  if (job.curves()) {
+    add_unit_of_drawing(job, remarks);
+    add_open_curves(statistics.facts, remarks);
+    add_made_straight(job.source, lengths, remarks);
+  } else add_orientation(job, statistics.facts, remarks);
   add_borders(statistics.borders, lengths, remarks);
   add_source_crossings(job, statistics, remarks);
   add_seams(statistics.facts.seams, farthest, lengths, remarks);

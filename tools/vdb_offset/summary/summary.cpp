@@ -139,9 +139,18 @@ void add_exactness(const ExactFacts& exact, const Lengths& lengths, Remarks& rem
                                              exact.vertices, lengths(exact.mean, 2), lengths(exact.worst, 2)));
 }
 
+/// How far points of a CAD model that was read again are from its source, by the least and the most share of the
+/// distance.
+std::string shares_in_words(double least, double most) {
+  const double off = std::max(std::abs(1 - least), std::abs(most - 1));
+  constexpr double kAsOne = 0.01;  // shares that are nearer to 1 are reported by how far they are off
+  if (off < kAsOne) return fmt::format("off the distance by {:.1g} % at most", 100 * off);
+  return fmt::format("at {:.3g} to {:.3g} % of the distance", 100 * least, 100 * most);
+}
+
 /// What was made of a CAD model.
 std::string cad_in_words(const CadFileFacts& cad, const Lengths& lengths) {
-  constexpr const char* kMade[] = {"a valid solid", "valid shells", "faces alone", "a solid of triangles"};
+  constexpr const char* kMade[] = {"a valid solid", "valid shells", "single faces, no solid", "a solid of triangles"};
   std::string text =
       fmt::format("{}: {} faces kept, {} fitted", kMade[static_cast<int>(cad.made)], cad.kept, cad.fitted);
   if (cad.fitted > 0) text += " to " + lengths(cad.fit_error, 2);
@@ -149,8 +158,7 @@ std::string cad_in_words(const CadFileFacts& cad, const Lengths& lengths) {
   if (cad.missing > 0) text += fmt::format(", {} missing", cad.missing);
   if (cad.held > 0) text += fmt::format(", {} held back to {:.3g} of the distance", cad.held, cad.least_held);
   if (cad.samples > 0)
-    text +=
-        fmt::format("; read again, {} points at {:.3g} to {:.3g} of the distance", cad.samples, cad.least, cad.most);
+    text += fmt::format("; read again, {} points are {}", cad.samples, shares_in_words(cad.least, cad.most));
   if (cad.volume > 0) text += ", volume " + lengths.volume(cad.volume);
   return text;
 }
@@ -292,13 +300,23 @@ Summary summary_of(const Job& job, const LayersResult& result, const LayerReport
   const Lengths& lengths = job.request.lengths;
   Summary made;
   made.verdict = fmt::format(
-      "{}: {} layers full on {} % of the {}, {} of {} thick on average; {} cells, least scaled Jacobian {:.3g}",
+      "{}: {} layers full on {} % of the {}, {} of {} thick on average; {} cells; scaled Jacobian: "
+      "least {:.3g}, median {:.3g}",
       job.request.output, report.layers, area_percent(all.coverage, 1), report.plane ? "length" : "area",
-      lengths(all.reached.mean, 4), lengths(all.asked.mean, 4), all.cells, all.scaled_jacobian.least);
+      lengths(all.reached.mean, 4), lengths(all.asked.mean, 4), all.cells, all.scaled_jacobian.least,
+      all.scaled_jacobian.median);
   Remarks& remarks = made.remarks;
   if (report.inverted_block_cells > 0)
     remarks.add(Gravity::Wrong, fmt::format("{} cells of the block are collapsed or inverted, as where layers end",
                                             report.inverted_block_cells));
+  if (all.poor_cells > 0)
+    remarks.add(Gravity::Off,
+                fmt::format("{} of {} cells have a scaled Jacobian below {}{}", all.poor_cells, all.cells,
+                            LayerFigures::kPoorJacobian,
+                            all.poor_at_wall > 0 ? fmt::format(", as {} of them at the wall stand on needles of the "
+                                                               "mesh. Remesh the wall",
+                                                               all.poor_at_wall)
+                                                 : ""));
   if (report.unpaired_sides > 0)
     remarks.add(Gravity::Input,
                 fmt::format("{} sides on edges of three faces, or of two of opposite orientation, are on "

@@ -197,13 +197,20 @@ class FigureCollector {
   /// Adds the figures of quality, of so many cells in each layer. number(i) is that of the i-th of them in all layers.
   template <class Number>
   void add_quality(std::size_t in_layer, Number&& number, LayerFigures& figures) const {
-    figures.inverted_cells = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, figures.cells, 65536), std::size_t{0},
-        [&](const auto& range, std::size_t sum) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) sum += !(quality_.scaled_jacobian[number(i)] > 0);
-          return sum;
-        },
-        std::plus<>());
+    const auto count = [&](std::size_t cells, auto&& counts) {
+      return tbb::parallel_reduce(
+          tbb::blocked_range<std::size_t>(0, cells, 65536), std::size_t{0},
+          [&](const auto& range, std::size_t sum) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+              sum += counts(quality_.scaled_jacobian[number(i)]);
+            return sum;
+          },
+          std::plus<>());
+    };
+    const auto is_poor = [](double jacobian) { return !(jacobian >= LayerFigures::kPoorJacobian); };
+    figures.inverted_cells = count(figures.cells, [](double jacobian) { return !(jacobian > 0); });
+    figures.poor_cells = count(figures.cells, is_poor);
+    figures.poor_at_wall = count(in_layer, is_poor);
     figures.scaled_jacobian =
         spread_of(figures.cells, [&](std::size_t i) { return quality_.scaled_jacobian[number(i)]; });
     figures.aspect_ratio = spread_of(figures.cells, [&](std::size_t i) { return quality_.aspect_ratio[number(i)]; });

@@ -241,6 +241,8 @@ Json figures_json(const LayerFigures& figures) {
             {"error_quantile_99", figures.first_error_99}}},
           {"scaled_jacobian", spread_json(figures.scaled_jacobian)},
           {"inverted_cells", figures.inverted_cells},
+          {"poor_cells", figures.poor_cells},
+          {"poor_cells_at_wall", figures.poor_at_wall},
           {"aspect_ratio", spread_json(figures.aspect_ratio)},
           {"wall_angle", spread_json(figures.wall_angle)}};
 }

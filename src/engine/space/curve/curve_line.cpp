@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "space/curve/curve_line.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 
 #include "ground/numbers/median.h"
 #include "vdb_offset/run.h"
@@ -13,6 +16,17 @@ double median_length(const PlaneChains& plane) {
   std::vector<double> lengths;
   for (const auto& [a, b] : plane.chains.segments) lengths.push_back((plane.points[b] - plane.points[a]).length());
   return median(lengths);
+}
+
+/// Of all segments.
+double length_of(CurvesView curves) {
+  double length = 0;
+  for (std::size_t c = 0; c < curves.face_count(); ++c) {
+    const auto curve = curves.face(c);
+    for (std::size_t i = 1; i < curve.size(); ++i)
+      length += (curves.positions[curve[i]] - curves.positions[curve[i - 1]]).length();
+  }
+  return length;
 }
 
 /// Closes a curve. If one curve of the input runs between the two ends, its first point is appended to it; otherwise a
@@ -112,8 +126,20 @@ std::vector<OpenCurve> open_curves(CurvesView curves) {
 }
 
 std::vector<OpenCurve> close_curves(Curves& curves) {
-  std::vector<OpenCurve> closed = open_curves(curves.view());
-  std::erase_if(closed, [](const OpenCurve& each) { return !each.is_nearly_closed(); });
+  const std::vector<OpenCurve> open = open_curves(curves.view());
+  std::vector<OpenCurve> closed;
+  std::ranges::copy_if(open, std::back_inserter(closed), &OpenCurve::is_nearly_closed);
+  double length = 0;
+  for (const OpenCurve& each : open) length += each.length;
+  // Nothing else is there but lines that are open, up to rounding of their lengths.
+  constexpr double kRounding = 1e-9;
+  if (closed.empty() && !open.empty() && length_of(curves.view()) <= (1 + kRounding) * length) {
+    const OpenCurve& first = open.front();
+    throw InvalidInput(
+        fmt::format("expected a closed curve, or ends nearer to each other than {:g} of the length "
+                    "between them, got {:.6g} of {:.6g}",
+                    OpenCurve::kNearlyClosed, first.gap, first.length));
+  }
   for (const OpenCurve& each : closed) close(curves, each);
   return closed;
 }
