@@ -221,9 +221,9 @@ struct LayerFigures {
   double first_error = 0, first_error_99 = 0;
   Spread scaled_jacobian, aspect_ratio;  ///< Of cells (see cell_quality.h).
   std::size_t inverted_cells = 0;        ///< Cells whose scaled Jacobian is not above 0.
-  /// Cells whose scaled Jacobian is below kPoorJacobian, and those of them in the first layer, over needles of the
-  /// wall.
-  std::size_t poor_cells = 0, poor_at_wall = 0;
+  /// Cells whose scaled Jacobian is below kPoorJacobian, and faces of the wall with an angle whose sine is: needles, on
+  /// which no cell can be better.
+  std::size_t poor_cells = 0, needles = 0;
   static constexpr double kPoorJacobian = 0.01;  ///< Solvers warn of cells below about this, or do not converge.
   Spread wall_angle;                             ///< Degrees, of the cells at the wall: 0 is best.
 };

@@ -301,8 +301,8 @@ TEST_CASE("command: all causes of a quarter or more of the faces' error are repo
   const std::string
       coarse = " % of the faces' error is between the vertices of large faces. To split these: --tolerance 1%\n",
       corners =
-          " % of the faces' error is at sharp corners. Use --corners miter, or --tolerance 1% to split "
-          "the faces there\n";
+          " % of the faces' error is at sharp corners, where --corners round keeps the vertices at it. To split the "
+          "faces there: --tolerance 1%\n";
   const std::string coarse_first = warnings_of(1, "--corners round"),
                     corners_first = warnings_of(0.8, "--corners round");
   CHECK(coarse_first.find(coarse) < coarse_first.find(corners));
@@ -545,7 +545,8 @@ TEST_CASE("command: what is misspelt or missing is named, with what is meant", "
         {in_out + "-d 1 more", "not expected: more"},
         {in_out + "-d 0.2 mm", "mm: expected the unit without a space, as in 0.2mm"},
         {in_out + "--offset 1", "unknown option --offset; did you mean --distance?"},
-        {"--help corner", "--help: expected distances, accuracy, "},
+        {"--help corner", "the name of an option, got 'corner'; did you mean --help corners?"},
+        {"--help nonsense", "--help: expected distances, accuracy, "},
         {"check sphere.obj sphere.obj --stric", "unknown option --stric; did you mean --strict?"},
         {"check sphere.obj sphere.obj --layers 1", "unknown option --layers (vdb_offset check --help all lists"},
         {"batch . out -d 1 --model x", "unknown option --model; did you mean --models?"},
@@ -555,7 +556,9 @@ TEST_CASE("command: what is misspelt or missing is named, with what is meant", "
         {"cheque out.obj -d 1", "cheque: expected an input that ends in"}})
     check_failure(shell, arguments, 1, message);
   CHECK(shell("--distance-xyz --help").code == 0);
+  CHECK_THAT(shell("--help -d").out, Catch::Contains("--distance D") && !Catch::Contains("--corners KIND"));
   CHECK(shell(in_out + "-d=0.1 -q").code == 0);
+  check_failure(shell, in_out + "-d '-x=1 ? 1 : 2'", 1, "'==' compares");
   CHECK(shell(in_out + "-d=-1% -q").code == 0);
   CHECK_THAT(shell("--help corners").out, Catch::Contains("--corners KIND") && !Catch::Contains("--miter-limit L"));
   // A file of nearly such a name is one.

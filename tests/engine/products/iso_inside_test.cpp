@@ -392,3 +392,26 @@ TEST_CASE("iso: by default, voxels of hollow solids are so small that no face re
   wide.off_source = true;
   CHECK(plan_iso_surface(box.view(), wide).plan.voxel_size == before);
 }
+
+TEST_CASE("iso: a hollow solid of a mesh that is inside out is all inside out", "[iso]") {
+  Polygons cube = shapes::box({1, 1, 1}, 2, true);
+  for (std::size_t f = 0; f < cube.face_count(); ++f)
+    std::reverse(cube.corners.begin() + cube.face_begin[f], cube.corners.begin() + cube.face_begin[f + 1]);
+  IsoOptions options;
+  options.orient = Orient::FixDirectionOnly;
+  options.off_source = true;
+  // Inward a smaller cube, outward one with round edges and corners (Steiner's formula).
+  constexpr double kPi = 3.14159265358979;
+  for (const auto& [distance, volume] :
+       {std::pair(-0.1, 1 - 0.8 * 0.8 * 0.8), std::pair(0.1, 6 * 0.1 + 3 * kPi * 0.01 + 4 * kPi / 3 * 0.001)}) {
+    options.distance = distance;
+    const Polygons skin = make_iso_surface(cube.view(), options).polygons;
+    const Hollow hollow = distance < 0 ? make_hollow(cube.view(), skin.view(), Hollow::Source::Outer)
+                                       : make_hollow(skin.view(), cube.view(), Hollow::Source::Inner);
+    INFO(distance);
+    CHECK(hollow.facts.closed);
+    CHECK(hollow.facts.oriented);
+    CHECK(std::abs(hollow.facts.volume) == Approx(volume).epsilon(0.02));
+    CHECK((hollow.facts.volume > 0) == (distance > 0));
+  }
+}

@@ -89,7 +89,7 @@ std::optional<BatchRequest> parse_batch(int argc, const char* const* argv) {
   line.file("DIR", "Folder with models, in subfolders as well", request.folder);
   line.file("OUT", "Folder to write to; created if it is missing", request.out);
   declare_batch(line, request, reports);
-  line.add_config(options_of_distance(), {}, {"sshlogin"});
+  line.add_config(alternative_options(), {}, {"sshlogin"});
   line.hide_what_follows();
   declare_offset_options(line, draft);
   if (!line.parse(argc, argv)) return std::nullopt;

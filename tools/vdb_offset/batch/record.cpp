@@ -56,6 +56,13 @@ std::string figure(const json& report, const char* place) {
   return value.is_string() ? value.get<std::string>() : value.is_number() ? value.dump() : std::string();
 }
 
+/// Pairs that meet and did not before, near crossings of the source and elsewhere; none where nothing is known of them.
+std::string new_crossings(const json& report) {
+  const json::json_pointer left("/limit/left/crossings"), near("/limit/crossings_near_source");
+  if (!report.contains(left) || !report.contains(near)) return {};
+  return fmt::format("{}", report.at(left).get<std::size_t>() + report.at(near).get<std::size_t>());
+}
+
 /// What a report says for the table. That of an iso-surface has its figures elsewhere.
 Record::Figures figures_of(const json& report) {
   const std::string at = report.contains("surface") ? "/surface" : "";
@@ -65,7 +72,7 @@ Record::Figures figures_of(const json& report) {
           .mean_error = figure(report, (at + "/faces/mean_error").c_str()),
           .within_1_percent = figure(report, (at + "/faces/share_within_1_percent").c_str()),
           .certified = figure(report, "/certified/certified"),
-          .new_crossings = figure(report, at.empty() ? "/limit/left/crossings" : "/surface/crossings"),
+          .new_crossings = at.empty() ? new_crossings(report) : figure(report, "/surface/crossings"),
           .warning = figure(report, "/warnings/0/text")};
 }
 

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <numeric>
 #include <sstream>
@@ -42,7 +41,8 @@ constexpr const char* kAllPresets = "help";
 
 /// The words behind the name of a program or subcommand in reverse order, as CLI11 takes them. Words behind `--` are
 /// names of files, whatever they begin with.
-std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
+std::vector<std::string> reversed_arguments(const CLI::App& app, int argc, const char* const* argv) {
+  constexpr std::size_t kShortAndSign = 3;  // letters of -d=
   std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   const auto mark = std::find(arguments.begin(), arguments.end(), "--");
   if (mark != arguments.end()) {
@@ -52,11 +52,12 @@ std::vector<std::string> reversed_arguments(int argc, const char* const* argv) {
       if (name->starts_with('-') && *name != "-") name->insert(0, "./");
     arguments.erase(mark);
   }
-  // -d=1 is -d 1: CLI11 has the sign for a part of the value. In an expression, as -x==1, it stands twice.
+  // -d=1 is -d 1: CLI11 has the sign for a part of the value.
   for (std::string& word : arguments)
-    if (word.size() > 3 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0 && word[2] == '=' &&
-        word[3] != '=')
-      word.erase(2, 1);
+    if (word.size() > kShortAndSign && word[0] == '-' && word[1] != '-' && word[2] == '=')
+      if (const CLI::Option* const option = app.get_option_no_throw(word.substr(0, 2));
+          option && option->get_expected_max() > 0)
+        word.erase(2, 1);
   std::reverse(arguments.begin(), arguments.end());
   return arguments;
 }
@@ -142,34 +143,53 @@ void CommandLine::list_for(const std::string& topic) {
   for (const std::string& name : first_options_) app_->get_option("--" + name)->group("Options");
 }
 
-bool CommandLine::is_topic(const std::string& word) const {
-  return word == "all" || std::ranges::any_of(topics_, [&](const HelpTopic& each) {
-           return each.name == word ||
-                  (app_->get_option_no_throw("--" + word) && std::ranges::count(each.options, word));
-         });
+std::string CommandLine::topic_of(std::string word) const {
+  while (word.starts_with('-')) word.erase(0, 1);
+  const auto is_listed = [&](const std::string& name) {
+    return std::ranges::any_of(topics_,
+                               [&](const HelpTopic& each) { return std::ranges::count(each.options, name) > 0; });
+  };
+  for (const CLI::Option* const option : app_->get_options()) {
+    if (option->get_lnames().empty()) continue;
+    const std::string& name = option->get_lnames().front();
+    if (is_listed(name) && (name == word || std::ranges::count(option->get_snames(), word) > 0)) return name;
+  }
+  return word == "all" || std::ranges::any_of(topics_, [&](const HelpTopic& each) { return each.name == word; }) ? word
+                                                                                                                 : "";
 }
 
-void CommandLine::print_help(std::string topic) {
-  if (topic.starts_with("--")) topic.erase(0, 2);
-  if (!is_topic(topic)) topic.clear();
-  list_for(topic);
-  app_->footer(topic.empty() ? more_of_first_ : topic == "all" ? more_of_all_ : "");
-  fmt::print(Printout(), "{}", app_->help());
+std::string CommandLine::meant_by(std::string word) const {
+  while (word.starts_with('-')) word.erase(0, 1);
+  std::pair nearest(true, kMostEdits + 1);  // whether it begins otherwise, and by how many letters it differs
+  std::string meant;
+  const auto offer = [&](const std::string& name) {
+    const std::pair far(!name.starts_with(word), edits_between(word, name));
+    if (far < nearest) nearest = far, meant = name;
+  };
+  for (const HelpTopic& each : topics_) {
+    offer(each.name);
+    for (const std::string& name : each.options)
+      if (app_->get_option_no_throw("--" + name)) offer(name);
+  }
+  return meant;
 }
 
 bool CommandLine::answer_help(const std::vector<std::string>& reversed) {
   const auto asked = std::find_if(reversed.rbegin(), reversed.rend(),
                                   [](const std::string& word) { return word == "-h" || word == "--help"; });
   if (asked == reversed.rend()) return false;
-  const std::string topic = asked + 1 == reversed.rend() ? "" : asked[1];
-  // Behind it nothing but a word that names neither a topic nor an option, nor a file.
-  if (reversed.size() == 2 && asked == reversed.rbegin() && !topics_.empty() && !topic.starts_with('-') &&
-      !is_topic(topic) && topic.find_first_of("./") == std::string::npos) {
+  const std::string word = asked + 1 == reversed.rend() ? "" : asked[1], topic = topic_of(word);
+  // What is neither a topic nor an option is a file where there is more, and on a line of its own a mistake.
+  if (reversed.size() == 2 && asked == reversed.rbegin() && !topics_.empty() && topic.empty()) {
     std::string topics;
     for (const HelpTopic& each : topics_) topics += fmt::format("{}, ", each.name);
-    throw UsageError(fmt::format("--help: expected {}all or the name of an option, got '{}'", topics, topic));
+    const std::string meant = meant_by(word);
+    throw UsageError(fmt::format("--help: expected {}all or the name of an option, got '{}'{}", topics, word,
+                                 meant.empty() ? "" : fmt::format("; did you mean --help {}?", meant)));
   }
-  print_help(topic);
+  list_for(topic);
+  app_->footer(topic.empty() ? more_of_first_ : topic == "all" ? more_of_all_ : "");
+  fmt::print(Printout(), "{}", app_->help());
   return true;
 }
 
@@ -179,7 +199,7 @@ void CommandLine::place(CLI::Option* option) {
   hidden_options_.push_back(option);
 }
 
-void CommandLine::add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over,
+void CommandLine::add_config(std::vector<std::vector<std::string>> alternatives, std::vector<std::string> passed_over,
                              std::vector<std::string> kept_out) {
   alternatives_ = std::move(alternatives);
   passed_over_ = std::move(passed_over);
@@ -242,14 +262,18 @@ std::vector<std::string> CommandLine::words_of(const std::vector<ConfigEntry>& e
   const auto is_among = [](const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
-  const bool has_alternative = std::any_of(alternatives_.begin(), alternatives_.end(),
-                                           [this](const std::string& name) { return has(("--" + name).c_str()); });
+  const auto has_alternative = [&](const std::string& name) {
+    return std::ranges::any_of(alternatives_, [&](const std::vector<std::string>& set) {
+      return is_among(set, name) &&
+             std::ranges::any_of(set, [this](const std::string& other) { return has(("--" + other).c_str()); });
+    });
+  };
   std::vector<std::string> words;
   for (const ConfigEntry& entry : entries) {
     require(!is_among(kept_out_, entry.name),
             fmt::format("{}: {}: expected on the command line alone, as a file may come from somebody else",
                         entry.place, entry.name));
-    if (is_among(passed_over_, entry.name) || (has_alternative && is_among(alternatives_, entry.name))) continue;
+    if (is_among(passed_over_, entry.name) || has_alternative(entry.name)) continue;
     const CLI::Option* const option = app_->get_option_no_throw("--" + entry.name);
     const bool is_known = option && option->get_positional() == false && entry.name != "config" &&
                           entry.name != "help" && entry.name != "version";
@@ -320,7 +344,7 @@ std::string CommandLine::text_of(const CLI::Option& option, const std::string& g
 }
 
 bool CommandLine::parse(int argc, const char* const* argv) {
-  std::vector<std::string> reversed = reversed_arguments(argc, argv);
+  std::vector<std::string> reversed = reversed_arguments(*app_, argc, argv);
   if (answer_help(reversed)) return false;
   if (!understand(reversed)) return false;
   require_values();

@@ -57,9 +57,9 @@ class CommandLine {
   void add_version(const std::string& version);
   /// --config, a file with values of options that the line does not have, and --preset, which names one that comes with
   /// the command. One of `alternatives` on the line counts
-  /// instead of all of them in the file. Names that are `passed_over` are options of other commands. A file that has a
-  /// name that is `kept_out` is refused.
-  void add_config(std::vector<std::string> alternatives, std::vector<std::string> passed_over = {},
+  /// instead of all of the same set in the file. Names that are `passed_over` are options of other commands. A file
+  /// that has a name that is `kept_out` is refused.
+  void add_config(std::vector<std::vector<std::string>> alternatives, std::vector<std::string> passed_over = {},
                   std::vector<std::string> kept_out = {});
   /// --unit, the unit of the file's numbers, with which lengths may have units of their own. `unit` gets its name;
   /// where it is not given, the file `input`, which other options name, may state its own.
@@ -119,10 +119,10 @@ class CommandLine {
   bool understand(std::vector<std::string> reversed);
   /// Prints what --help asks for if it is among the words. Returns whether it was. \throw UsageError
   bool answer_help(const std::vector<std::string>& reversed);
-  /// The options of a topic, one option by its name, or for any other word the first screen.
-  void print_help(std::string topic);
-  /// Whether --help has a list for the word: that of a topic, all, or one option.
-  bool is_topic(const std::string& word) const;
+  /// What --help lists for a word: a topic, all, or an option by its long name; empty for any other word.
+  std::string topic_of(std::string word) const;
+  /// The topic or option of nearly that name; empty if there is none.
+  std::string meant_by(std::string word) const;
   /// Puts each option that is to be listed under a title, and takes all others off the list.
   void list_for(const std::string& topic);
   /// What a file of options says of those that were not given, as words. \throw UsageError
@@ -138,7 +138,8 @@ class CommandLine {
   const char* help_;
   std::string config_, preset_;
   std::vector<PresetOption> of_preset_;
-  std::vector<std::string> alternatives_, passed_over_, kept_out_;
+  std::vector<std::vector<std::string>> alternatives_;
+  std::vector<std::string> passed_over_, kept_out_;
   const std::string *unit_ = nullptr, *measured_ = nullptr;
   Lengths* lengths_ = nullptr;
   std::size_t lengths_by_ = std::string::npos;  // number of the option in kLengths that their unit is of

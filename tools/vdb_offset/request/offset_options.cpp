@@ -346,8 +346,11 @@ void complete(Draft& draft) {
 
 }  // namespace
 
-std::vector<std::string> options_of_distance() {
-  return {"distance", "distance-from", "distance-xy", "distance-z", "fit"};
+std::vector<std::vector<std::string>> alternative_options() {
+  return {{"distance", "distance-from", "distance-xy", "distance-z", "fit"},
+          {"first-height", "total-thickness", "heights"},
+          {"layers", "heights"},
+          {"growth", "heights"}};
 }
 
 void declare_offset_options(CommandLine& line, Draft& draft) {
@@ -370,7 +373,7 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   line.file("INPUT", "Mesh to offset (.obj .ply .stl .off, also .gz .zst; '-'), curves (see below), or a scene (.json)",
             draft.request.input);
   line.file("OUTPUT", "Mesh to write, by extension; may be the input; '-' is standard output", draft.request.output);
-  line.add_config(options_of_distance(), {"output", "models", "jobs", "reports", "retry-failed", "slurm"},
+  line.add_config(alternative_options(), {"output", "models", "jobs", "reports", "retry-failed", "slurm"},
                   {"sshlogin"});
   declare_offset_options(line, draft);
   line.arrange_help(help_topics(), {"distance", "preset", "corners", "tolerance", "only", "shell", "mode", "layers"},

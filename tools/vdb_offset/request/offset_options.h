@@ -31,8 +31,9 @@ struct Draft {
   std::string distance_xy, distance_z;
 };
 
-/// The options that say how far the offset goes, of which one counts.
-std::vector<std::string> options_of_distance();
+/// Sets of options that say the same thing in other ways, as how far the offset goes. What the command line has of a
+/// set stands in the place of all that a file or a preset has of it.
+std::vector<std::vector<std::string>> alternative_options();
 
 /// Declares all options of an offset. \pre the draft lives as long as the command line
 void declare_offset_options(CommandLine& line, Draft& draft);

@@ -39,7 +39,8 @@ std::string explained(std::string problem, const std::vector<PresetOption>& opti
   const auto found = std::ranges::find_if(options, is_named);
   if (found != options.end())
     problem += fmt::format(" ({} comes from --preset {}{})", found->name, found->preset,
-                           found->is_flag ? fmt::format("; without it: {}=false", found->name) : "");
+                           found->is_flag ? fmt::format("; without it: {}=false", found->name)
+                                          : "; --preset help shows the others, to give them without it");
   return problem;
 }
 

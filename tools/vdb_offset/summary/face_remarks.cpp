@@ -20,6 +20,10 @@ constexpr double kLeastCause = 0.25;
 // as being at the distance.
 constexpr double kAtDistance = 0.01;
 
+// Share of the area with room from which on so little is left that it is not worth a warning. That which --preset part
+// asks for.
+constexpr double kAsGoodAsAll = 0.99;
+
 // Share of the distance by less than which faces that are farther are not reported. Not measured: nobody would see it.
 constexpr double kLeastFarther = 1e-3;
 
@@ -36,6 +40,9 @@ bool may_be_split(const Job& job, const OffsetStatistics& statistics) {
 std::string corners_in_words(const Job& job, const OffsetStatistics& statistics) {
   const bool any_branches = statistics.facts.non_manifold_edges > 0;
   const char* const branches = job.curves() ? "where curves branch" : "at edges of more than two faces";
+  if (job.request.corners == Corners::Round)
+    return fmt::format("is at sharp corners, where --corners round keeps the vertices at it{}",
+                       may_be_split(job, statistics) ? ". To split the faces there: --tolerance 1%" : "");
   if (job.corners() == Corners::Round)
     return fmt::format("is at sharp corners. Use --corners miter{}{}",
                        may_be_split(job, statistics) ? ", or --tolerance 1% to split the faces there" : "",
@@ -102,7 +109,7 @@ void add_certified(const CertifiedFaces& certified, std::size_t faces, Remarks& 
     remarks.add(Gravity::Detail, fmt::format("{} faces were split into {}", certified.source_faces, faces));
   if (certified.certified < certified.there)
     remarks.add(
-        Gravity::Off,
+        certified.certified < kAsGoodAsAll * certified.there ? Gravity::Off : Gravity::Detail,
         fmt::format("the vertices of {} % of the area reached the distance; what of it is not certified is up to "
                     "{:.3g} % off",
                     area_percent(certified.there, 2), 100 * certified.worst_left));
@@ -143,13 +150,15 @@ void add_faces(const Job& job, const OffsetStatistics& statistics, Remarks& rema
                 fmt::format("at sharp edges faces are {:.3g} % farther than the distance on average (miters)",
                             100 * faces.farther));
   const bool curves = job.curves();
+  const char* const less = job.request.layers ? "a smaller height"
+                           : job.to_fit       ? "a smaller clearance"
+                                              : "a smaller distance";
   std::vector<std::pair<double, std::string>> causes{
       // Where there is room on the other side, another remark says so.
       {statistics.room.suggests_other() ? 0 : faces.held_back,
-       fmt::format("is at {} that fall short. Use a smaller distance, which has more room",
-                   curves ? "points" : "vertices")},
+       fmt::format("is at {} that fall short. Use {}, which has more room", curves ? "points" : "vertices", less)},
       {faces.stuck, fmt::format("is at {} that have no room at any distance", curves ? "points" : "vertices")},
-      {faces.no_room, "is in walls or gaps narrower than two distances. Use a smaller distance"},
+      {faces.no_room, fmt::format("is in walls or gaps narrower than two distances. Use {}", less)},
       {faces.corners, corners_in_words(job, statistics)},
       {faces.coarse, cause_of_coarse(job, statistics)}};
   std::erase_if(causes, [](const auto& cause) { return cause.first < kLeastCause; });

@@ -51,7 +51,7 @@ std::string as_option(const SymmetryPlane& plane) {
 
 /// Which planes borders stay in without having been asked to, and where borders of the offset are not as one would
 /// expect from the input.
-void add_borders(const BorderFacts& borders, const Lengths& lengths, Remarks& remarks) {
+void add_borders(const Job& job, const BorderFacts& borders, const Lengths& lengths, Remarks& remarks) {
   if (borders.planes.size() > borders.named_planes)
     remarks.add(Gravity::Detail, fmt::format("borders stay in the plane they lie in: {} (--symmetry none: do not)",
                                              planes_in_words(std::span(borders.planes).subspan(borders.named_planes))));
@@ -74,8 +74,11 @@ void add_borders(const BorderFacts& borders, const Lengths& lengths, Remarks& re
   }
   remarks.add(Gravity::Off,
               fmt::format("borders in {} leave that plane by up to {}, because their faces rise from it by less "
-                          "than 12 degrees. To keep them there: --symmetry {}",
-                          planes_in_words(left), lengths(farthest, 3), as_option(left.front())));
+                          "than 12 degrees{}",
+                          planes_in_words(left), lengths(farthest, 3),
+                          is_cad_output(job.request.output, job.request)
+                              ? ""
+                              : ". To keep them there: --symmetry " + as_option(left.front())));
 }
 
 /// A distance as it was given, with the other sign.
@@ -105,43 +108,54 @@ void add_made_straight(const Source& source, const Lengths& lengths, Remarks& re
     remarks.add(Gravity::Detail, fmt::format("{} curved shape{} became straight segments, at most {} off (--flatten)",
                                              flattened, plural(flattened), lengths(source.curves->flattened_to, 3)));
   for (const OpenCurve& closed : source.closed)
-    remarks.add(Gravity::Detail, fmt::format("a gap of {} between a curve's ends was closed", lengths(closed.gap)));
+    remarks.add(Gravity::Input, fmt::format("a gap of {} between a curve's ends counts as closed; the curve that is "
+                                            "written has it still",
+                                            lengths(closed.gap)));
 }
 
 /// Where a distance without a unit is in that of a drawing, and this is not the one that people think of.
-void add_unit_of_drawing(const Job& job, Remarks& remarks) {
+void add_unit_of_drawing(const Job& job, const Distances& distances, Remarks& remarks) {
   const std::optional<double> unit = job.source.curves->file.unit_micrometres, mm = micrometres_of("mm");
-  if (!unit || *unit == *mm || job.request.lengths.have_unit() || job.request.distances.empty()) return;
-  const std::string& text = job.request.distances.front().text;
-  if (const auto number = decimal<double>(text))
-    remarks.add(Gravity::Input,
-                fmt::format("lengths without a unit are in the drawing's own, of {:.4g} mm: {} is {:.4g} "
-                            "mm. For millimetres: --distance {}mm",
-                            *unit / *mm, text, *number * *unit / *mm, text));
+  if (!unit || *unit == *mm || job.request.lengths.have_unit() || !distances.uniform() || distances[0] == 0) return;
+  for (const DistanceRequest& each : job.request.distances)
+    if (const auto number = decimal<double>(each.text); number && *number == distances[0])
+      return remarks.add(Gravity::Input,
+                         fmt::format("lengths without a unit are in the drawing's own, of {:.4g} mm: {} is {:.4g} mm. "
+                                     "For millimetres: --distance {}mm",
+                                     *unit / *mm, each.text, *number * *unit / *mm, each.text));
 }
 
 /// A distance that is many times the size of what is offset is often one in another unit.
-void add_too_far(double farthest, double diagonal, const Lengths& lengths, Remarks& remarks) {
+void add_too_far(const Distances& distances, double diagonal, const Lengths& lengths, Remarks& remarks) {
   constexpr double kMostDiagonals = 3;  // not measured: offsets that far are blobs
+  const double farthest = std::abs(distances.farthest());
   if (diagonal > 0 && farthest > kMostDiagonals * diagonal)
-    remarks.add(Gravity::Wrong,
-                fmt::format("the distance is {:.3g} times the diagonal, {}. If its unit is another one: "
-                            "--distance 1% does not depend on units",
-                            farthest / diagonal, lengths(diagonal)));
+    remarks.add(Gravity::Wrong, fmt::format("the distance is {:.3g} times the diagonal, which is {}. Is it in another "
+                                            "unit? A percentage is of the diagonal",
+                                            farthest / diagonal, lengths(diagonal)));
 }
 
 /// Lines that enclose nothing move as well, which may not be meant.
-void add_open_curves(const MeshFacts& facts, Remarks& remarks) {
-  if (const std::size_t open = facts.components - facts.closed_components; open > 0 && facts.closed_components > 0)
-    remarks.add(Gravity::Input,
-                fmt::format("{} of {} curves {} open and moved to the right of {} direction. To leave "
-                            "them where they are, take them out of the file",
-                            open, facts.components, open == 1 ? "is" : "are", open == 1 ? "its" : "their"));
+void add_open_curves(const MeshFacts& facts, double farthest, Remarks& remarks) {
+  const std::size_t open = facts.components - facts.closed_components;
+  if (open > 0 && facts.closed_components > 0 && farthest > 0)
+    remarks.add(Gravity::Input, fmt::format("{} of {} curves {} open: what encloses nothing moves to one side, by its "
+                                            "direction",
+                                            open, facts.components, open == 1 ? "is" : "are"));
 }
 
 /// Whether coordinates are kept to the last bit of a double.
 bool has_all_digits(const Job& job) {
   return !job.source.file || job.source.file->precision.kind == Precision::Kind::Double;
+}
+
+/// What has to go from the command line for --mode iso; empty if nothing has to.
+std::string in_place_of(const Request& request) {
+  if (!request.of_preset.empty()) return " in place of --preset " + request.of_preset.front().preset;
+  for (const char* const option : {"--corners", "--tolerance", "--only", "--symmetry", "--obstacle", "--collision",
+                                   "--taper", "--html", "--states"})
+    if (request.given.contains(option)) return std::string(" in place of ") + option;
+  return {};
 }
 
 /// Where the input intersects itself, or the refined source does. What added vertices are rounded to is all that makes
@@ -154,10 +168,10 @@ void add_source_crossings(const Job& job, const OffsetStatistics& statistics, Re
   const std::string near = limit.more_source_crossings
                                ? "the result was not searched near them"
                                : fmt::format("the result adds {} pairs near them", limit.crossings_near_source);
-  const char* const remedy =
+  const std::string remedy =
       job.curves() || job.request.layers || job.request.iso || is_cad_output(job.request.output, job.request)
           ? ""
-          : ". For a clean surface: --mode iso";
+          : ". For a clean surface: --mode iso" + in_place_of(job.request);
   const bool is_refined = statistics.certified && statistics.certified->source_faces > 0;
   const std::size_t own = is_refined ? statistics.certified->source_crossings : 0;
   if (is_refined && own == 0)
@@ -213,12 +227,13 @@ std::string planes_in_words(std::span<const SymmetryPlane> planes) {
 
 void add_orientation(const Job& job, const MeshFacts& facts, Remarks& remarks) {
   if (facts.inside_out_components > 0) {
-    const bool is_one = facts.inside_out_components == 1;
+    const bool is_one = facts.inside_out_components == 1,
+               is_inward = !job.distances.empty() && job.distances.front().farthest() < 0;
     const std::string pieces = inside_out_in_words(job, facts);
     if (job.options.orient == Orient::Keep)
-      remarks.add(Gravity::Wrong, fmt::format("{0}: positive distances shrink {1}. To enlarge {1}: --orient "
-                                              "fix-direction-only",
-                                              pieces, is_one ? "it" : "them"));
+      remarks.add(Gravity::Wrong, fmt::format("{0}: {2} distances {3} {1}. To {4} {1}: --orient fix-direction-only",
+                                              pieces, is_one ? "it" : "them", is_inward ? "negative" : "positive",
+                                              is_inward ? "enlarge" : "shrink", is_inward ? "shrink" : "enlarge"));
     else remarks.add(Gravity::Detail, pieces + ": treated as flipped; the faces stay as they are");
   }
   if (facts.enclosed_components > 0)
@@ -283,17 +298,17 @@ std::vector<std::string> side_hints(const Job& job, const SideRoom& room) {
 void add_input(const Job& job, const OffsetStatistics& statistics, const Distances& distances, Remarks& remarks) {
   const Lengths& lengths = job.request.lengths;
   const double farthest = std::abs(distances.farthest());
-  add_too_far(farthest, statistics.facts.diagonal, lengths, remarks);
+  add_too_far(distances, statistics.facts.diagonal, lengths, remarks);
   add_rounding(statistics.rounding, farthest, lengths, remarks);
   for (std::string& hint : side_hints(job, statistics.room)) remarks.add(Gravity::Wrong, std::move(hint));
   const auto in = [&](VertexState state) { return statistics.vertices_by_state[static_cast<std::size_t>(state)]; };
   if (in(VertexState::Limited) + in(VertexState::Collision) > 0) add_slivers(statistics.facts, lengths, remarks);
   if (job.curves()) {
-    add_unit_of_drawing(job, remarks);
-    add_open_curves(statistics.facts, remarks);
+    add_unit_of_drawing(job, distances, remarks);
+    add_open_curves(statistics.facts, farthest, remarks);
     add_made_straight(job.source, lengths, remarks);
   } else add_orientation(job, statistics.facts, remarks);
-  add_borders(statistics.borders, lengths, remarks);
+  add_borders(job, statistics.borders, lengths, remarks);
   add_source_crossings(job, statistics, remarks);
   add_seams(statistics.facts.seams, farthest, lengths, remarks);
   if (statistics.disagreeing_distances > 0)

@@ -103,6 +103,12 @@ Summary summary_of(const Job& job, const std::string& path, double distance, con
                                shell.oriented ? "" : ", not oriented", lengths.volume(shell.volume),
                                made.hollow->source == Hollow::Source::Outer ? "inner" : "outer");
     add_shell(shell, all.remarks);
+    if (!shell.oriented)
+      all.remarks.add(Gravity::Wrong,
+                      "faces of the solid point to both sides of it, as pieces of the input do: a slicer "
+                      "may fill the cavity. Turn those pieces round first");
+    else if (shell.volume < 0)
+      all.remarks.add(Gravity::Input, "the solid is inside out, as the input is: its faces point into it");
   }
   all.verdict += surface_in_words(found, distance, lengths);
   add_surface(found, lengths, all.remarks);

@@ -139,12 +139,13 @@ void add_exactness(const ExactFacts& exact, const Lengths& lengths, Remarks& rem
                                              exact.vertices, lengths(exact.mean, 2), lengths(exact.worst, 2)));
 }
 
-/// How far points of a CAD model that was read again are from its source, by the least and the most share of the
-/// distance.
+/// Where points of a CAD model that was read again are, by the least and the most share of the distance.
 std::string shares_in_words(double least, double most) {
+  constexpr double kAtDistance = 0.01, kNothing = 1e-6;  // shares of the distance
   const double off = std::max(std::abs(1 - least), std::abs(most - 1));
-  constexpr double kAsOne = 0.01;  // shares that are nearer to 1 are reported by how far they are off
-  if (off < kAsOne) return fmt::format("off the distance by {:.1g} % at most", 100 * off);
+  if (off < kNothing) return "at the distance";
+  if (off < kAtDistance) return fmt::format("off the distance by {:.1g} % at most", 100 * off);
+  if (least > 1 - kAtDistance) return fmt::format("at the distance, at sharp edges up to {:.3g} times it", most);
   return fmt::format("at {:.3g} to {:.3g} % of the distance", 100 * least, 100 * most);
 }
 
@@ -311,12 +312,10 @@ Summary summary_of(const Job& job, const LayersResult& result, const LayerReport
                                             report.inverted_block_cells));
   if (all.poor_cells > 0)
     remarks.add(Gravity::Off,
-                fmt::format("{} of {} cells have a scaled Jacobian below {}{}", all.poor_cells, all.cells,
+                fmt::format("{} of {} cells have a scaled Jacobian below {}. {}", all.poor_cells, all.cells,
                             LayerFigures::kPoorJacobian,
-                            all.poor_at_wall > 0 ? fmt::format(", as {} of them at the wall stand on needles of the "
-                                                               "mesh. Remesh the wall",
-                                                               all.poor_at_wall)
-                                                 : ""));
+                            all.needles > 0 ? fmt::format("{} faces of the wall are needles: remesh it", all.needles)
+                                            : "Thinner layers have more room"));
   if (report.unpaired_sides > 0)
     remarks.add(Gravity::Input,
                 fmt::format("{} sides on edges of three faces, or of two of opposite orientation, are on "

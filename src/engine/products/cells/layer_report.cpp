@@ -172,8 +172,21 @@ class FigureCollector {
         for (const auto v : mesh_.face(f)) visit(v);
   }
 
+  /// Whether the sine of an angle of a face is below the scaled Jacobian of poor cells: that of a cell over it is no
+  /// larger at that corner.
+  bool is_needle(std::span<const std::uint32_t> face) const {
+    for (std::size_t k = 0; k < face.size() && face.size() > 2; ++k) {
+      const Vec3d &at = mesh_.positions[face[k]], &next = mesh_.positions[face[(k + 1) % face.size()]],
+                  &last = mesh_.positions[face[(k + face.size() - 1) % face.size()]];
+      const Vec3d a = next - at, b = last - at;
+      if (!(a.cross(b).length() >= LayerFigures::kPoorJacobian * a.length() * b.length())) return true;
+    }
+    return false;
+  }
+
   void add_cells(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
     for (const auto f : faces) {
+      figures.needles += facts_.cells[f] > 0 && is_needle(mesh_.face(f));
       for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c)
         figures.cells_by_type[static_cast<std::size_t>(quality_.types[c])] += layers_.count();
       if (facts_.role[f] == FaceRole::Transition) figures.transition_cells += layers_.count() * facts_.cells[f];
@@ -210,7 +223,6 @@ class FigureCollector {
     const auto is_poor = [](double jacobian) { return !(jacobian >= LayerFigures::kPoorJacobian); };
     figures.inverted_cells = count(figures.cells, [](double jacobian) { return !(jacobian > 0); });
     figures.poor_cells = count(figures.cells, is_poor);
-    figures.poor_at_wall = count(in_layer, is_poor);
     figures.scaled_jacobian =
         spread_of(figures.cells, [&](std::size_t i) { return quality_.scaled_jacobian[number(i)]; });
     figures.aspect_ratio = spread_of(figures.cells, [&](std::size_t i) { return quality_.aspect_ratio[number(i)]; });

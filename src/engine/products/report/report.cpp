@@ -242,7 +242,7 @@ Json figures_json(const LayerFigures& figures) {
           {"scaled_jacobian", spread_json(figures.scaled_jacobian)},
           {"inverted_cells", figures.inverted_cells},
           {"poor_cells", figures.poor_cells},
-          {"poor_cells_at_wall", figures.poor_at_wall},
+          {"needles", figures.needles},
           {"aspect_ratio", spread_json(figures.aspect_ratio)},
           {"wall_angle", spread_json(figures.wall_angle)}};
 }

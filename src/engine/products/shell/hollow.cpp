@@ -14,7 +14,17 @@
 namespace vdb_offset {
 namespace {
 
-Polygons put_together(PolygonView outer, PolygonView inner) {
+/// The volume by the divergence theorem, relative to a vertex, so that solids far from the origin lose no digits.
+double volume_of(const Surface& surface) {
+  const Vec3d origin = surface.vertices.front();
+  double six_times = 0;
+  for (const auto& [a, b, c] : surface.triangles)
+    six_times += (surface.vertices[a] - origin).dot((surface.vertices[b] - origin).cross(surface.vertices[c] - origin));
+  return six_times / 6;
+}
+
+/// Both skins, the inner one turned round. That of a source which is inside out already bounds a solid from within.
+Polygons put_together(PolygonView outer, PolygonView inner, bool is_inside_out) {
   const auto first = static_cast<std::uint32_t>(outer.positions.size());
   Polygons all;
   all.positions.assign(outer.positions.begin(), outer.positions.end());
@@ -24,7 +34,8 @@ Polygons put_together(PolygonView outer, PolygonView inner) {
   all.corners.reserve(outer.corners.size() + inner.corners.size());
   for (std::size_t f = 0; f < inner.face_count(); ++f) {
     const auto face = inner.face(f);
-    for (std::size_t k = 0; k < face.size(); ++k) all.corners.push_back(first + face[(face.size() - k) % face.size()]);
+    for (std::size_t k = 0; k < face.size(); ++k)
+      all.corners.push_back(first + face[is_inside_out ? k : (face.size() - k) % face.size()]);
     all.close_face();
   }
   return all;
@@ -46,15 +57,6 @@ void count_edges(Hollow& hollow) {
   });
 }
 
-/// The volume by the divergence theorem, relative to a vertex, so that solids far from the origin lose no digits.
-double volume_of(const Surface& surface) {
-  const Vec3d origin = surface.vertices.front();
-  double six_times = 0;
-  for (const auto& [a, b, c] : surface.triangles)
-    six_times += (surface.vertices[a] - origin).dot((surface.vertices[b] - origin).cross(surface.vertices[c] - origin));
-  return six_times / 6;
-}
-
 void count_crossings(const Surface& surface, Hollow& hollow) {
   const auto is_source = [&](std::uint32_t triangle) {
     const bool is_outer = surface.face[triangle] < hollow.outer_faces;
@@ -71,11 +73,12 @@ Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source, 
     throw InvalidInput(fmt::format("hollow: expected fewer than 2^32 vertices, got {}",
                                    outer.positions.size() + inner.positions.size()));
   Hollow hollow;
-  hollow.polygons = put_together(outer, inner);
-  if (source != Hollow::Source::Neither) {
-    const bool is_outer = source == Hollow::Source::Outer;
-    const std::vector<Vec3d> welded = positions_as_welded(is_outer ? outer : inner, weld);
-    const std::size_t first = is_outer ? 0 : outer.positions.size();
+  const bool has_source = source != Hollow::Source::Neither;
+  const PolygonView skin = source == Hollow::Source::Inner ? inner : outer;
+  hollow.polygons = put_together(outer, inner, has_source && volume_of(build_surface(skin, {})) < 0);
+  if (has_source) {
+    const std::vector<Vec3d> welded = positions_as_welded(skin, weld);
+    const std::size_t first = source == Hollow::Source::Outer ? 0 : outer.positions.size();
     std::copy(welded.begin(), welded.end(), hollow.polygons.positions.begin() + static_cast<std::ptrdiff_t>(first));
   }
   hollow.outer_vertices = outer.positions.size();

@@ -137,7 +137,7 @@ std::vector<OpenCurve> close_curves(Curves& curves) {
     const OpenCurve& first = open.front();
     throw InvalidInput(
         fmt::format("expected a closed curve, or ends nearer to each other than {:g} of the length "
-                    "between them, got {:.6g} of {:.6g}",
+                    "between them, got a gap of {:.6g} in {:.6g}",
                     OpenCurve::kNearlyClosed, first.gap, first.length));
   }
   for (const OpenCurve& each : closed) close(curves, each);
