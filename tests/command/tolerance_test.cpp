@@ -359,3 +359,16 @@ TEST_CASE("tolerance: how far off the worst of all faces is, is said beside what
   CHECK_THAT(check.out, Catch::Contains("the worst of all faces is up to "));
   CHECK(json_of(shell, "c.json")["certified"]["worst"].get<double>() == Approx(certified["worst"].get<double>()));
 }
+
+TEST_CASE("tolerance: a share in the place of a percentage is refused", "[command]") {
+  const ShellCommand shell;
+  check_failure(shell, "sphere.obj out.obj -d 0.1 --tolerance 1% --strict-certified 0.99", 1,
+                "--strict-certified: expected a percentage from 1 to 100, got '0.99'");
+}
+
+TEST_CASE("check: what is on the wrong side is not there", "[command]") {
+  const ShellCommand shell;
+  CHECK(shell("sphere.obj out.obj -d 0.1 -q").code == 0);
+  CHECK_THAT(shell("check sphere.obj out.obj -d -0.1").out,
+             Catch::StartsWith("distance    -0.1: 0.000 % of 642 vertices there, 0 beyond, 642 on the wrong side"));
+}

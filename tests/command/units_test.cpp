@@ -90,6 +90,16 @@ TEST_CASE("units: what is said of lengths is in the unit of the distance, also i
   CHECK_THAT(none.err, Catch::Contains("reached the distance of -60 mm: the part is thinner than 2 × 60 mm."));
 }
 
+TEST_CASE("units: a format without the unit of the input is no silent loss of it", "[command]") {
+  const ShellCommand shell;
+  CHECK(shell("sphere.obj in.glb -d 0.1 -q").code == 0);  // in metres, as all of glTF
+  CHECK_THAT(shell("in.glb out.stl -d 1mm").err, Catch::Contains("the unit (1000 mm)"));
+  CHECK_THAT(shell("in.glb out.gltf -d 1mm").err, !Catch::Contains("the unit"));
+  CHECK(shell("sphere.obj in.3mf -d 0.1 --unit mm -q").code == 0);
+  CHECK_THAT(shell("in.3mf out.glb -d 0.1mm").err, Catch::Contains("the unit (1 mm; the numbers stay as they are"));
+  CHECK_THAT(shell("in.3mf out.stl -d 0.1mm").err, !Catch::Contains("the unit"));
+}
+
 TEST_CASE("units: what cannot be meant is refused", "[command]") {
   const ShellCommand shell;
   check_failure(shell, "sphere.obj a.obj -d 0.2mm", 1, "does not state its unit; add --unit mm");

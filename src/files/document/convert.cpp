@@ -78,6 +78,15 @@ void name_losses_of_triangles(const MeshFile& source, Format target, std::vector
     lost.emplace_back("digits beyond single precision");
 }
 
+/// Names the unit where the format cannot state it, or has another one. Numbers without one are taken for millimetres.
+void name_loss_of_unit(double micrometres, Format target, std::vector<std::string>& lost) {
+  constexpr double kMillimetre = 1e3, kMetre = 1e6;
+  const bool is_gltf = target == Format::Gltf || target == Format::Glb;
+  if (target == Format::ThreeMf || micrometres == (is_gltf ? kMetre : kMillimetre)) return;
+  lost.push_back(fmt::format("the unit ({:g} mm{})", micrometres / kMillimetre,
+                             is_gltf ? "; the numbers stay as they are, and are metres now" : ""));
+}
+
 /// The faces of a CAD model as parts, which follow each other.
 std::vector<Part> parts_of_model(const FaceNames& names) {
   std::vector<Part> parts;
@@ -135,6 +144,7 @@ Pieces encode_fitting(const MeshFile& source, Format target, const std::shared_p
     with.lost.emplace_back("normals");
   }
   fit_to_format(target, content->mesh, with);
+  if (source.unit_micrometres) name_loss_of_unit(*source.unit_micrometres, target, with.lost);
   if (is_of_triangles(target)) name_losses_of_triangles(source, target, with.lost);
   if (!content->parts.empty() && !keeps_parts(target, with)) with.lost.emplace_back(kShellParts);
   result.lost = first_names(with.lost);

@@ -171,8 +171,12 @@ double parse_strict_faces(const std::string& text) {
 }
 
 double parse_strict_certified(const std::string& text) {
-  return parse_number("--strict-certified", text.ends_with('%') ? text.substr(0, text.size() - 1) : text,
-                      "a percentage above 0, up to 100", 0, 100);
+  constexpr const char* kExpected = "a percentage from 1 to 100";
+  const double percent = parse_number("--strict-certified",
+                                      text.ends_with('%') ? text.substr(0, text.size() - 1) : text, kExpected, 0, 100);
+  // A share, as 0.99, is meant by what is below: nobody asks for less than a hundredth.
+  require(percent >= 1, fmt::format("--strict-certified: expected {}, got '{}'", kExpected, text));
+  return percent;
 }
 
 Tolerance parse_tolerance(const std::string& text) {

@@ -146,7 +146,8 @@ class CurveChecker {
           miter &&
           (positions_[v] - curves.source[v] - Vec2d(miter->displacement[0], miter->displacement[1])).length() <=
               tolerance;
-      if (is_mitered) result_.states[p] = miter->state;
+      if (faults.on_wrong_side(v)) result_.states[p] = VertexState::Limited;
+      else if (is_mitered) result_.states[p] = miter->state;
       else if (std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
       result_.beyond += error > tolerance && !is_mitered;
       result_.wrong_side += faults.on_wrong_side(v);

@@ -307,13 +307,15 @@ void judge_vertices(const MeshParts& parts, std::span<const Vec3d> source, const
                is_beside_miter = !is_at_miter && error > tolerance && corners_of(options) == Corners::Miter &&
                                  is_on_planes(parts, w, displacement, distances[w], options, tolerance,
                                               find_miter(miters.of_vertex, w));
-    result.states[v] = is_at_miter                    ? miter->state
+    const bool is_on_right_side = finder.on_right_side(w);
+    result.states[v] = !is_on_right_side              ? VertexState::Limited
+                       : is_at_miter                  ? miter->state
                        : is_beside_miter              ? VertexState::Mitered
                        : std::abs(error) <= tolerance ? VertexState::Reached
                                                       : VertexState::Limited;
     if (is_at_miter && miter->nearer > 0) result.achieved[v] = miter->distance;
     result.beyond += error > tolerance && !is_at_miter && !is_beside_miter;
-    result.wrong_side += !finder.on_right_side(w);
+    result.wrong_side += !is_on_right_side;
   }
 }
 
