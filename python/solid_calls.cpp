@@ -41,7 +41,7 @@ std::vector<Shell> shells_of(PolygonView mesh, std::vector<OffsetResult>& result
   std::vector<Shell> shells;
   for (std::size_t i = 0; i + (inner ? 1 : 0) < results.size(); ++i) {
     shells.push_back(shell_of(mesh, results[i], options, inner));
-    tell_states(shells.back(), results[i]);
+    report_states(shells.back(), results[i]);
   }
   return shells;
 }

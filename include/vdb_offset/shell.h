@@ -156,7 +156,7 @@ VDB_OFFSET_API Shell shell_of(PolygonView mesh, const OffsetResult& result, cons
 /// Updates the states and distances of vertices at junctions, and near them, in a result: they have reached the
 /// distance if all of their corners are where they should be. Else their distance is the share of it that all corners
 /// have kept.
-VDB_OFFSET_API void tell_states(const Shell& shell, OffsetResult& result);
+VDB_OFFSET_API void report_states(const Shell& shell, OffsetResult& result);
 
 /// A solid with a cavity: the faces of an outer surface in their order, then those of an inner surface, turned round.
 struct Hollow {

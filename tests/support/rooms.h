@@ -28,7 +28,7 @@ inline Made made_of(const Polygons& mesh, double distance, std::vector<std::uint
   options.only = std::move(only);
   Made made{offset(mesh.view(), options), {}};
   made.shell = shell_of(mesh.view(), made.result, options);
-  tell_states(made.shell, made.result);
+  report_states(made.shell, made.result);
   return made;
 }
 

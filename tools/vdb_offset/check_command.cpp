@@ -328,7 +328,7 @@ std::optional<CheckResult> measure_meshes(const CheckRequest& request, ProgressB
 
 std::optional<CheckResult> measure(CheckRequest& request) {
   const Request& made = request.made;
-  tell_of_lost_input(made.input);
+  report_lost_input(made.input);
   request.are_curves = holds_curves(made.input);
   if (request.are_curves && request.axes)
     throw UsageError("--distance-xy: expected meshes, as this is not for checking curves");

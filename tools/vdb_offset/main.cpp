@@ -55,7 +55,7 @@ ExitCode run(const Job& job, const Timing& timing, ProgressBar& bar) {
 ExitCode run(const Request& request) {
   const auto start = Clock::now();
   const bool of_batch = belongs_to_batch();
-  tell_of_lost_input(request.input);
+  report_lost_input(request.input);
   std::optional<tbb::global_control> threads;  // limits reading and writing as well
   if (request.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));

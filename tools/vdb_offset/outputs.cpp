@@ -225,7 +225,7 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   Products made;
   if (job.shell && !is_cad_output(to.mesh, request)) {
     shell = shell_of(mesh, outcome.result, job.options, outcome.inner);
-    tell_states(*shell, outcome.result);
+    report_states(*shell, outcome.result);
     made.shell = shell->facts;
   }
   const io::VertexStates states{result.states, result.achieved, result.distances};

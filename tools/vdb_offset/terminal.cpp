@@ -141,7 +141,7 @@ void ignore_interrupts() {
   for (const int signal : kInterrupts) std::signal(signal, SIG_IGN);
 }
 
-void tell_of_lost_input(const std::string& path) {
+void report_lost_input(const std::string& path) {
   lost_input = readable(path);
   std::signal(SIGBUS, end_for_lost_input);
 }

@@ -70,6 +70,6 @@ void catch_interrupts();
 void ignore_interrupts();
 /// Input files are mapped: one that is cut short while it is read ends the process by SIGBUS. From here on it ends with
 /// a message about `path`, no temporary file and exit code 2.
-void tell_of_lost_input(const std::string& path);
+void report_lost_input(const std::string& path);
 
 }  // namespace vdb_offset::tool

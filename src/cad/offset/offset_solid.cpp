@@ -28,7 +28,8 @@ FaceDistance towards(const FaceDistance& outside, double sign) {
 }
 
 /// Tells how each face of a model was made, and which face it became; of those from `first` on.
-void tell_faces(const Model& model, const std::vector<TopoDS_Face>& built, std::size_t first, OffsetCadResult& result) {
+void report_faces(const Model& model, const std::vector<TopoDS_Face>& built, std::size_t first,
+                  OffsetCadResult& result) {
   for (std::size_t f = 0; f < model.faces.size(); f++) {
     if (f < built.size()) result.made_of[first + f] = built[f];
     if (model.faces[f].is_gone) result.faces[first + f] = CadFace::Swallowed;
@@ -101,7 +102,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
       }
       Built built = build_shell(model, tolerances);
       result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());
-      tell_faces(model, built.faces, first_face, result);
+      report_faces(model, built.faces, first_face, result);
       if (!built.shell.IsNull()) shells.push_back(built.shell);
     }
     if (shells.empty()) continue;

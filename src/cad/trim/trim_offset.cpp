@@ -90,7 +90,7 @@ TopoDS_Shape solid_of(std::vector<TopoDS_Shell> shells) {
 }
 
 // Which pieces each face of the source is left with: nothing, a face, or a compound of some.
-void tell_pieces(const TopoDS_Shape& untrimmed, const std::vector<FacePiece>& pieces, OffsetCadResult& result) {
+void report_pieces(const TopoDS_Shape& untrimmed, const std::vector<FacePiece>& pieces, OffsetCadResult& result) {
   TopTools_IndexedMapOfShape faces;
   TopExp::MapShapes(untrimmed, TopAbs_FACE, faces);
   for (std::size_t k = 0; k < result.made_of.size(); k++) {
@@ -122,7 +122,7 @@ OffsetCadResult trim_offset(const TopoDS_Shape& source, OffsetCadResult offset, 
   offset.shape = shells.empty() ? TopoDS_Shape() : solid_of(shells);
   if (shells.empty()) offset.gaps.emplace_back("faces cross, and what is left of them is not closed");
   else if (offset.shape.IsNull()) offset.gaps.emplace_back("the offset falls apart");
-  tell_pieces(untrimmed, pieces, offset);
+  report_pieces(untrimmed, pieces, offset);
   return offset;
 }
 

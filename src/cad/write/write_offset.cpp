@@ -226,13 +226,13 @@ class OffsetWriter {
     AskedDistance asked = AskedDistance::even(millimetres_ * write_.distance);
     if (!body.is_even() && !is_at_distances(body, asked)) return false;
     const Verdict verdict = judge_offset(body.source.shape, body.result.shape, shape, asked, {});
-    if (body.is_even()) tell_measured(verdict.samples, verdict.least, verdict.most);
+    if (body.is_even()) report_measured(verdict.samples, verdict.least, verdict.most);
     if (verdict.is_good) add_volume(again, shape);
     written_.gaps.insert(written_.gaps.end(), verdict.faults.begin(), verdict.faults.end());
     return verdict.is_good;
   }
 
-  void tell_measured(std::size_t samples, double least, double most) {
+  void report_measured(std::size_t samples, double least, double most) {
     written_.samples += samples;
     written_.least = std::min(written_.least, least);
     written_.most = std::max(written_.most, most);
@@ -256,7 +256,7 @@ class OffsetWriter {
       most = std::max(most, here.most);
       worst = std::max(worst, here.worst);
     }
-    tell_measured(samples, least, most);
+    report_measured(samples, least, most);
     if (worst <= kMostOff * largest()) return true;
     written_.gaps.push_back("a face is off its distance by up to " + std::to_string(worst / millimetres_));
     return false;

@@ -24,7 +24,7 @@ Made made_of_two(const Polygons& mesh, double outer, double inner) {
   std::vector<OffsetResult> results = offset_several(mesh.view(), std::vector<Distances>{outer, -inner}, options);
   Made made{std::move(results[0]), {}};
   made.shell = shell_of(mesh.view(), made.result, options, &results[1]);
-  tell_states(made.shell, made.result);
+  report_states(made.shell, made.result);
   return made;
 }
 

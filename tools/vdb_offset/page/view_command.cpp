@@ -80,7 +80,7 @@ std::string temporary_page() {
 
 /// Writes the page of a mesh, or of curves, alone.
 void show_alone(const Request& made) {
-  tell_of_lost_input(made.input);
+  report_lost_input(made.input);
   require_writable(made.html);
   const Source source = read_source(made, holds_curves(made.input));
   std::vector<RunFile> read{{"FILE", made.input}};

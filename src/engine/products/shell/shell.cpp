@@ -256,7 +256,7 @@ Shell shell_of(PolygonView given, const OffsetResult& result, const OffsetOption
   return simple;
 }
 
-void tell_states(const Shell& shell, OffsetResult& result) {
+void report_states(const Shell& shell, OffsetResult& result) {
   if (shell.kept.empty()) return;
   VDB_OFFSET_ASSERT(shell.kept.size() == result.states.size() && shell.is_junction.size() == shell.kept.size());
   for (std::size_t v = 0; v < shell.kept.size(); ++v) {

@@ -239,10 +239,10 @@ class RefinedRun {
     };
     const double stages = 1 + std::ceil(std::log(refiner.loosest()) / std::log(kTightened));
     double stage = 0;
-    const auto tell_in_stage = [&](double share) { tell((stage + share) / stages); };
+    const auto report_in_stage = [&](double share) { tell((stage + share) / stages); };
     for (double loosened = refiner.loosest();; loosened = std::max(1.0, loosened / kTightened), ++stage) {
       refiner.begin_stage(loosened);
-      while (refiner.begin_round(tell_in_stage) && split(refiner, loosened > 1 ? kLeastGainBefore : kLeastGain)) {
+      while (refiner.begin_round(report_in_stage) && split(refiner, loosened > 1 ? kLeastGainBefore : kLeastGain)) {
       }
       if (loosened == 1) break;
     }

@@ -54,7 +54,7 @@ class LeafRounds {
             found[i] = visit(static_cast<std::size_t>(round[i]));
           progress.advance(range.size());
         });
-        for (std::size_t i = 0; i < round.size(); ++i) tell_neighbours(round[i], found[i]);
+        for (std::size_t i = 0; i < round.size(); ++i) report_neighbours(round[i], found[i]);
         graph_.link_new_leaves();
         grow(graph_.size());
       }
@@ -76,7 +76,7 @@ class LeafRounds {
     list.resize(kept);
     return round;
   }
-  void tell_neighbours(std::int32_t leaf, const Pending& found) {
+  void report_neighbours(std::int32_t leaf, const Pending& found) {
     for (int face = 0; face < graph_.open_faces(); ++face) {
       VDB_OFFSET_ASSERT(found[static_cast<std::size_t>(face)] >= 0);
       if (found[static_cast<std::size_t>(face)] == kNonePending) continue;

@@ -82,7 +82,8 @@ class FaceMeter {
     if (triangles_.empty() || !(area_up_to_.back() > 0)) return {};
     measure_all(std::min(kMostSamples, kMostOfTriangle * triangles_.size()));
     FaceError result = sum_up_errors(error_);
-    if (!faces_.source.empty() && (result.mean > kWorthTelling || share_too_far() > kWorthTelling)) tell_causes(result);
+    if (!faces_.source.empty() && (result.mean > kWorthTelling || share_too_far() > kWorthTelling))
+      report_causes(result);
     return result;
   }
 
@@ -206,7 +207,7 @@ class FaceMeter {
     return std::abs(moved - asked) > kAtDistance * std::abs(asked);
   }
 
-  void tell_causes(FaceError& result) const {
+  void report_causes(FaceError& result) const {
     const std::vector<Corner> corner = corners_off_planes();
     const bool is_worth_telling = result.mean > kWorthTelling;
     const std::vector<double> no_room = is_worth_telling ? lacks_of_room() : std::vector<double>(count_, 0);
