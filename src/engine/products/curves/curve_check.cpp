@@ -146,11 +146,11 @@ class CurveChecker {
           miter &&
           (positions_[v] - curves.source[v] - Vec2d(miter->displacement[0], miter->displacement[1])).length() <=
               tolerance;
-      if (faults.on_wrong_side(v)) result_.states[p] = VertexState::Limited;
-      else if (is_mitered) result_.states[p] = miter->state;
-      else if (std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
+      const bool is_on_wrong_side = faults.on_wrong_side(v);
+      if (is_mitered && !is_on_wrong_side) result_.states[p] = miter->state;
+      else if (is_on_wrong_side || std::abs(error) > tolerance) result_.states[p] = VertexState::Limited;
       result_.beyond += error > tolerance && !is_mitered;
-      result_.wrong_side += faults.on_wrong_side(v);
+      result_.wrong_side += is_on_wrong_side;
     }
   }
 
