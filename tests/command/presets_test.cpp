@@ -45,3 +45,10 @@ TEST_CASE("presets: a height that is given takes the place of the preset's", "[c
   CHECK_THAT(shell("sphere.obj out.vtu --preset layers --heights heights.txt").out,
              Catch::Contains("2 layers full on 100.0 %") && Catch::Contains("0.03 of 0.03 thick"));
 }
+
+TEST_CASE("presets: a hollow figure keeps its own faces outside, or the run says that it does not", "[command]") {
+  const ShellCommand shell;
+  const std::string outside = "above 0 the distance makes a new skin outside";
+  CHECK_THAT(shell("sphere.obj out.obj -d 0.2 --preset hollow").out, Catch::Contains(outside));
+  CHECK_THAT(shell("sphere.obj out.obj -d -0.2 --preset hollow").out, !Catch::Contains(outside));
+}

@@ -105,6 +105,8 @@ TEST_CASE("units: what cannot be meant is refused", "[command]") {
   check_failure(shell, "sphere.obj a.obj -d 0.2mm", 1, "does not state its unit; add --unit mm");
   check_failure(shell, "sphere.obj a.obj -d 0.2 --unit parsec", 1,
                 "--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft'");
+  check_failure(shell, "sphere.obj a.obj -d 0.2 --unit Inch", 1, "got 'Inch'; did you mean in?");
+  check_failure(shell, "sphere.obj a.obj -d 0.2 MM", 1, "MM: expected the unit without a space, as in 0.2mm");
   check_failure(shell, "sphere.obj a.obj -d 0.2km --unit m", 1, "--distance: distance '0.2km'");
   check_failure(shell, "sphere.obj a.obj -d mm --unit mm", 1, "unknown name 'mm'");
   check_failure(shell, "sphere.obj a.obj -d 0.2mmm --unit mm", 1, "--distance: distance '0.2mmm'");

@@ -62,7 +62,8 @@ double rounded_down(double length) {
   return std::floor(length / step) * step;
 }
 
-/// Whether any vertex that was to move arrives. If none does, says so, and how far half of them come.
+/// Whether any vertex that was to move arrives. If none does, says so, and names a distance as far as half of them
+/// came.
 bool reaches_anything(const Job& job, const OffsetResult& result, const std::string& output) {
   std::vector<double> achieved;
   for (std::size_t v = 0; v < result.states.size(); ++v) {
@@ -82,8 +83,7 @@ bool reaches_anything(const Job& job, const OffsetResult& result, const std::str
                               : "there is no room for it";
   std::string smaller;
   if (const double half = lengths.in_unit(*middle); half > 0)
-    smaller = fmt::format(": about half of them reach --distance {}",
-                          lengths.value(std::copysign(rounded_down(half), asked)));
+    smaller = fmt::format(", as --distance {}", lengths.value(std::copysign(rounded_down(half), asked)));
   report_problem(fmt::format("{}: no {} reached the distance of {}: {}. Try a smaller distance{}", output,
                              job.curves() ? "point" : "vertex", lengths(asked), why, smaller));
   return false;

@@ -238,7 +238,8 @@ bool CommandLine::understand(std::vector<std::string> reversed) {
 /// \throw UsageError for a word that looks like an option and is none, with the one that is meant
 void CommandLine::require_known_options() const {
   for (const std::string& word : app_->remaining()) {
-    require(!micrometres_of(word), fmt::format("{0}: expected the unit without a space, as in 0.2{0}", word));
+    const std::string unit = unit_meant_by(word);
+    require(unit.empty(), fmt::format("{}: expected the unit without a space, as in 0.2{}", word, unit));
     if (!word.starts_with('-') || word == "-") continue;
     const std::string name = word.substr(0, word.find('='));
     std::string meant;
@@ -299,8 +300,10 @@ void CommandLine::add_unit(std::string& unit, const std::string& input, Lengths&
          "What the numbers of the file are: 'um', 'mm', 'cm', 'm', 'in' or 'ft'; then distances and other lengths may "
          "have a unit, as in 0.2mm [the file's own, if it states one]",
          [&unit](const std::string& text) {
+           const std::string meant = unit_meant_by(text);
            require(micrometres_of(text).has_value(),
-                   "--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft', got '" + text + "'");
+                   fmt::format("--unit: expected 'um', 'mm', 'cm', 'm', 'in' or 'ft', got '{}'{}", text,
+                               meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
            unit = text;
          });
 }

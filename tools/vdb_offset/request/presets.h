@@ -27,7 +27,7 @@ std::string presets_in_words();
 std::string explained(std::string problem, const std::vector<PresetOption>& options);
 
 /// Does what may find options wrong, by themselves or for an input, and explains those of a preset. \throw UsageError,
-/// InvalidInput
+/// InvalidInput, InvalidOption
 template <class Work>
 auto explaining_presets(const std::vector<PresetOption>& options, Work work) {
   try {
@@ -36,6 +36,8 @@ auto explaining_presets(const std::vector<PresetOption>& options, Work work) {
     throw UsageError(explained(error.what(), options));
   } catch (const InvalidInput& error) {
     throw InvalidInput(explained(error.what(), options));
+  } catch (const InvalidOption& error) {
+    throw InvalidOption(explained(error.what(), options));
   }
 }
 

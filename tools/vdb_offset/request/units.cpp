@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <string_view>
 
 #include "request/option_values.h"
@@ -23,6 +24,12 @@ std::optional<double> micrometres_of(const std::string& unit) {
   for (const Unit& each : kUnitsOfLength)
     if (each.name == unit) return each.micrometres;
   return std::nullopt;
+}
+
+std::string unit_meant_by(std::string word) {
+  for (char& letter : word) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  if (word == "inch" || word == "inches") return "in";
+  return micrometres_of(word) ? word : "";
 }
 
 std::string name_of_unit(double micrometres) {

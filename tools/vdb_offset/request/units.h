@@ -11,6 +11,9 @@ namespace vdb_offset::tool {
 /// A unit of length by its name, in micrometres; none for another word. 'um', 'mm', 'cm', 'm', 'in' or 'ft'.
 std::optional<double> micrometres_of(const std::string& unit);
 
+/// The unit that a word means: its name in other letters, or "inch"; empty for another word.
+std::string unit_meant_by(std::string word);
+
 /// A unit by its length, as it stands behind a number: its name, or if it has none its length, as in "x 2.5 mm".
 std::string name_of_unit(double micrometres);
 

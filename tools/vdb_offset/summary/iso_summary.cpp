@@ -103,6 +103,10 @@ Summary summary_of(const Job& job, const std::string& path, double distance, con
                                shell.oriented ? "" : ", not oriented", lengths.volume(shell.volume),
                                made.hollow->source == Hollow::Source::Outer ? "inner" : "outer");
     add_shell(shell, all.remarks);
+    if (made.hollow->source == Hollow::Source::Inner && job.request.given.contains("--preset hollow"))
+      all.remarks.add(Gravity::Input,
+                      "above 0 the distance makes a new skin outside. To keep the model's own faces there: "
+                      "a distance below 0");
     if (!shell.oriented)
       all.remarks.add(Gravity::Wrong,
                       "faces of the solid point to both sides of it, as pieces of the input do: a slicer "
