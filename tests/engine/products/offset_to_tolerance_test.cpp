@@ -736,7 +736,8 @@ TEST_CASE("tolerance: what is added stays on its own side of where fronts meet",
   }
 }
 
-TEST_CASE("tolerance: where the source crosses itself, pieces of no more faces meet than without", "[tolerance]") {
+TEST_CASE("tolerance: where the source crosses itself, pieces of no more faces meet than without",
+          "[tolerance][no_races]") {
   // Two coarse balls through each other, and a third one that is near.
   const Polygons ball = shapes::icosphere(1, 1);
   Polygons mesh;

@@ -58,7 +58,7 @@ std::size_t steep_edges(const Polygons& mesh, const OffsetResult& result, double
 }  // namespace
 
 TEST_CASE("fading: thickness rises from what falls short no more steeply than the taper says, as far as that is valid",
-          "[limit][fading]") {
+          "[limit][fading][no_races]") {
   // Fronts meet all over. Of the edges that stay steep each has a vertex that folds faces wherever it is nearer.
   const Polygons mesh = shapes::bumpy_sphere(1, 0.5, 4, 5, 5);
   constexpr double kDistance = -0.15;

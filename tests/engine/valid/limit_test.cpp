@@ -567,7 +567,8 @@ TEST_CASE("limit: what is short with round corners goes where there is room", "[
   }
 }
 
-TEST_CASE("limit: by default faces are no farther off than with round corners where much is in the way", "[limit]") {
+TEST_CASE("limit: by default faces are no farther off than with round corners where much is in the way",
+          "[limit][no_races]") {
   struct Case {
     const char* name;
     Polygons mesh;
