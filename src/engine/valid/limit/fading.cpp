@@ -85,15 +85,12 @@ std::vector<Fading::Bound> Fading::too_thick() const {
 std::vector<PlaceTrials::Place> Fading::places(const Bound& bound) const {
   const std::uint32_t v = bound.vertex;
   std::vector<PlaceTrials::Place> places;
-  const auto offer = [&](const Vec3d& displacement) {
+  const auto offer = [&](const Vec3d& displacement, double at) {
     if (!(displacement.lengthSqr() > 0)) return;
-    const Vec3d end = displacement_to_distance(state_.constrained, v, displacement, bound.thickness);
+    const Vec3d end = displacement_to_distance(state_.constrained, v, displacement, at);
     const auto same = [&](const PlaceTrials::Place& place) { return place.end == end; };
     if (std::none_of(places.begin(), places.end(), same)) places.push_back({end, 0});
   };
-  if (state_.paths.achieved[v] >= bound.thickness) offer(state_.paths.displacement[v]);
-  offer(state_.displacement_of(v));
-  offer(state_.in_planes(v, state_.displacement_of(bound.by)));
   Vec3d middle(0.0);
   double corners = 0;
   for (const auto t : state_.surface.triangles_around(v))
@@ -102,7 +99,14 @@ std::vector<PlaceTrials::Place> Fading::places(const Bound& bound) const {
         middle += state_.position_of(w);
         ++corners;
       }
-  offer(state_.in_planes(v, middle / corners - state_.source[v]));
+  const double now = thickness(v);
+  // Half of the way first, and all of it where that is valid as well: what stays halfway makes room for the next pass.
+  for (const double at : {(bound.thickness + now) / 2, bound.thickness}) {
+    if (state_.paths.achieved[v] >= at) offer(state_.paths.displacement[v], at);
+    offer(state_.displacement_of(v), at);
+    offer(state_.in_planes(v, state_.displacement_of(bound.by)), at);
+    offer(state_.in_planes(v, middle / corners - state_.source[v]), at);
+  }
   return places;
 }
 
