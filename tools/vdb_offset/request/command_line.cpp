@@ -387,7 +387,7 @@ GivenNames CommandLine::given() const {
     if (is_flag && !option->as<bool>()) continue;
     const std::string name = "--" + option->get_lnames().front();
     names.insert(name);
-    for (const std::string& value : option->results()) names.insert(name + " " + value);
+    for (const std::string& value : option->results()) names.insert(fmt::format("{} {}", name, value));
   }
   return names;
 }
