@@ -27,7 +27,7 @@ TEST_CASE("presets: a drawing to cut may have lines that stay open", "[command]"
   std::ofstream(shell.file("cut.svg")) << head << "<rect x='5' y='5' width='40' height='30'/>" << line << "</svg>";
   const Run cut = shell("cut.svg out.svg -d 2 --preset kerf");
   CHECK(cut.code == 0);
-  CHECK_THAT(cut.out, Catch::Contains("1 of 2 curves is open: what encloses nothing moves to one side") &&
+  CHECK_THAT(cut.out, Catch::Contains("1 of 2 curves is open and moves to one side, which its direction decides") &&
                           Catch::Contains("in the drawing's own, of 0.2646 mm: 2 is 0.5292 mm. For millimetres: "
                                           "--distance 2mm"));
   CHECK_THAT(shell("cut.svg out.svg -d 2mm --preset kerf").out, !Catch::Contains("lengths without a unit"));

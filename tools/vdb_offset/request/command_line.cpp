@@ -30,11 +30,34 @@ constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance
                                     "flatten",      "deflection",      "fit-tolerance", "blend"};
 
 // What other programs call it, and the option that is meant.
-constexpr std::pair<std::string_view, std::string_view> kCalledOtherwise[] = {{"--offset", "distance"},
-                                                                              {"--thickness", "distance"},
-                                                                              {"--amount", "distance"},
-                                                                              {"--join", "corners"},
-                                                                              {"--hollow", "shell"}};
+constexpr std::pair<const char*, const char*> kCalledOtherwise[] = {{"--offset", "--distance"},
+                                                                    {"--thickness", "--distance"},
+                                                                    {"--amount", "--distance"},
+                                                                    {"--join", "--corners"},
+                                                                    {"--hollow", "--shell"}};
+
+/// The one of several names that a word most likely stands for: that begins with it, or else differs from it by few
+/// letters.
+class NearestName {
+ public:
+  explicit NearestName(std::string_view word) : word_(word) {}
+
+  void offer(std::string_view name) {
+    const std::pair far(!name.starts_with(word_), edits_between(word_, name));
+    if (far >= far_) return;
+    far_ = far;
+    name_ = name;
+  }
+  /// Whatever else has been offered.
+  void take(std::string_view name) { name_ = name; }
+  /// Empty if there is none.
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string_view word_;
+  std::pair<bool, std::size_t> far_{true, kMostEdits + 1};  // whether it begins otherwise, and how many letters differ
+  std::string name_;
+};
 
 // In the place of a preset's name.
 constexpr const char* kAllPresets = "help";
@@ -160,18 +183,13 @@ std::string CommandLine::topic_of(std::string word) const {
 
 std::string CommandLine::meant_by(std::string word) const {
   while (word.starts_with('-')) word.erase(0, 1);
-  std::pair nearest(true, kMostEdits + 1);  // whether it begins otherwise, and by how many letters it differs
-  std::string meant;
-  const auto offer = [&](const std::string& name) {
-    const std::pair far(!name.starts_with(word), edits_between(word, name));
-    if (far < nearest) nearest = far, meant = name;
-  };
+  NearestName nearest(word);
   for (const HelpTopic& each : topics_) {
-    offer(each.name);
+    nearest.offer(each.name);
     for (const std::string& name : each.options)
-      if (app_->get_option_no_throw("--" + name)) offer(name);
+      if (app_->get_option_no_throw("--" + name)) nearest.offer(name);
   }
-  return meant;
+  return nearest.name();
 }
 
 bool CommandLine::answer_help(const std::vector<std::string>& reversed) {
@@ -242,20 +260,14 @@ void CommandLine::require_known_options() const {
     require(unit.empty(), fmt::format("{}: expected the unit without a space, as in 0.2{}", word, unit));
     if (!word.starts_with('-') || word == "-") continue;
     const std::string name = word.substr(0, word.find('='));
-    std::string meant;
-    for (const auto& [called, option] : kCalledOtherwise)
-      if (called == name && app_->get_option_no_throw("--" + std::string(option))) meant = option;
-    // Whether it begins otherwise, and by how many letters it differs.
-    std::pair nearest(true, meant.empty() ? kMostEdits + 1 : 0);
+    NearestName nearest(name);
     for (const CLI::Option* const option : app_->get_options())
-      for (const std::string& known : option->get_lnames()) {
-        const std::pair far(!("--" + known).starts_with(name), edits_between(name, "--" + known));
-        if (far >= nearest) continue;
-        nearest = far;
-        meant = known;
-      }
+      for (const std::string& known : option->get_lnames()) nearest.offer("--" + known);
+    for (const auto& [called, option] : kCalledOtherwise)
+      if (called == name && app_->get_option_no_throw(option)) nearest.take(option);
+    const std::string& meant = nearest.name();
     throw UsageError(meant.empty() ? fmt::format("unknown option {} ({} lists the options)", name, help_)
-                                   : fmt::format("unknown option {}; did you mean --{}?", name, meant));
+                                   : fmt::format("unknown option {}; did you mean {}?", name, meant));
   }
 }
 

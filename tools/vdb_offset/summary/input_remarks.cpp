@@ -108,8 +108,8 @@ void add_made_straight(const Source& source, const Lengths& lengths, Remarks& re
     remarks.add(Gravity::Detail, fmt::format("{} curved shape{} became straight segments, at most {} off (--flatten)",
                                              flattened, plural(flattened), lengths(source.curves->flattened_to, 3)));
   for (const OpenCurve& closed : source.closed)
-    remarks.add(Gravity::Input, fmt::format("a gap of {} between a curve's ends counts as closed; the curve that is "
-                                            "written has it still",
+    remarks.add(Gravity::Input, fmt::format("a gap of {} between a curve's ends counts as closed; the written "
+                                            "curve keeps it",
                                             lengths(closed.gap)));
 }
 
@@ -139,9 +139,9 @@ void add_too_far(const Distances& distances, double diagonal, const Lengths& len
 void add_open_curves(const MeshFacts& facts, double farthest, Remarks& remarks) {
   const std::size_t open = facts.components - facts.closed_components;
   if (open > 0 && facts.closed_components > 0 && farthest > 0)
-    remarks.add(Gravity::Input, fmt::format("{} of {} curves {} open: what encloses nothing moves to one side, by its "
-                                            "direction",
-                                            open, facts.components, open == 1 ? "is" : "are"));
+    remarks.add(Gravity::Input,
+                fmt::format("{} of {} curves {} to one side, which {} direction decides", open, facts.components,
+                            open == 1 ? "is open and moves" : "are open and move", open == 1 ? "its" : "their"));
 }
 
 /// Whether coordinates are kept to the last bit of a double.

@@ -15,11 +15,14 @@ namespace vdb_offset {
 namespace {
 
 /// The volume by the divergence theorem, relative to a vertex, so that solids far from the origin lose no digits.
-double volume_of(const Surface& surface) {
-  const Vec3d origin = surface.vertices.front();
+double volume_of(PolygonView mesh) {
+  const Vec3d origin = mesh.positions.front();
   double six_times = 0;
-  for (const auto& [a, b, c] : surface.triangles)
-    six_times += (surface.vertices[a] - origin).dot((surface.vertices[b] - origin).cross(surface.vertices[c] - origin));
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f);
+    const auto at = [&](std::size_t k) { return mesh.positions[face[k]] - origin; };
+    for (std::size_t k = 1; k + 1 < face.size(); ++k) six_times += at(0).dot(at(k).cross(at(k + 1)));
+  }
   return six_times / 6;
 }
 
@@ -75,7 +78,7 @@ Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source, 
   Hollow hollow;
   const bool has_source = source != Hollow::Source::Neither;
   const PolygonView skin = source == Hollow::Source::Inner ? inner : outer;
-  hollow.polygons = put_together(outer, inner, has_source && volume_of(build_surface(skin, {})) < 0);
+  hollow.polygons = put_together(outer, inner, has_source && volume_of(skin) < 0);
   if (has_source) {
     const std::vector<Vec3d> welded = positions_as_welded(skin, weld);
     const std::size_t first = source == Hollow::Source::Outer ? 0 : outer.positions.size();
@@ -85,9 +88,8 @@ Hollow make_hollow(PolygonView outer, PolygonView inner, Hollow::Source source, 
   hollow.outer_faces = outer.face_count();
   hollow.source = source;
   count_edges(hollow);
-  const Surface surface = build_surface(hollow.polygons.view(), {});
-  count_crossings(surface, hollow);
-  hollow.facts.volume = volume_of(surface);
+  count_crossings(build_surface(hollow.polygons.view(), {}), hollow);
+  hollow.facts.volume = volume_of(hollow.polygons.view());
   return hollow;
 }
 
