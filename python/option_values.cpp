@@ -199,7 +199,8 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
                 std::array{std::pair{"limit", Collision::Limit}, std::pair{"merge", Collision::Merge}});
   keywords.read(
       "corners", options.corners,
-      std::array{std::pair{"miter", std::optional(Corners::Miter)}, std::pair{"round", std::optional(Corners::Round)}});
+      std::array{std::pair{"miter", std::optional(Corners::Miter)}, std::pair{"round", std::optional(Corners::Round)},
+                 std::pair{"arc", std::optional(Corners::Arc)}});
   keywords.read("solver", options.solver,
                 std::array{std::pair{"closest", Solver::Closest}, std::pair{"eikonal", Solver::Eikonal}});
   keywords.read("border", options.border,
@@ -208,7 +209,7 @@ AskedOptions asked_options(const py::dict& given, const Source& source) {
   keywords.read("miter_limit", options.miter_limit);
   if (!(options.miter_limit >= 1) || !std::isfinite(options.miter_limit))
     throw InvalidOption("miter_limit: expected a number of 1 or more");
-  if (given.contains("miter_limit") && options.corners == Corners::Round)
+  if (given.contains("miter_limit") && options.corners.value_or(Corners::Miter) != Corners::Miter)
     throw InvalidOption("miter_limit needs corners='miter'");
   keywords.read("taper", options.taper);
   if (!(options.taper >= 0) || !std::isfinite(options.taper))

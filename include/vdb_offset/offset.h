@@ -70,7 +70,8 @@ struct VDB_OFFSET_API CheckOptions {
   SymmetryOptions symmetry;  ///< What is beyond a plane is on the wrong side if that plane is named.
   PolygonView obstacles;
   double clearance = 0;
-  std::optional<Corners> corners;  ///< None: Corners::Miter.
+  /// None: Corners::Miter. Arc: the source is a refinement with faces over ridges.
+  std::optional<Corners> corners;
   double miter_limit = 4;
   const ExactSurface* exact = nullptr;
   WeldOptions weld = WeldOptions::automatic();
@@ -148,6 +149,15 @@ struct RefinedOffset {
 /// refinement, unless something has to be held back; the proof is made of its positions as written. Options are those
 /// of offset(), but for `metric`, `off_source`, `inner_skin_last`, `keep_field` and `keep_paths`; `keep_face_errors`
 /// has no effect. \throw as offset(), and InvalidInput for a tolerance that cannot be used, or one of these options
+///
+/// With Corners::Arc faces are not split, but added over ridges: edges that are convex on the side to which they go
+/// (inward, concave ones), and bend by more than one vertex could serve within the tolerance. A vertex on ridges has a
+/// copy for each part of the surface between them, and more in between; all copies stand where it stands in the mesh,
+/// and each moves by itself: faces in their planes, and what lies between them on the round surface at the distance.
+/// The refinement has the mesh's faces in their order, with the copies of their corners; then strips of faces, edge by
+/// edge, then patches over corners (`over_ridges` and `over_corners` count them), each with one of the mesh's faces
+/// beside it for a parent. Ridges are not opened at borders of the surface or of the part that moves, in planes that
+/// vertices stay in, at edges of more than two faces, and where their strips would cross. `exact` has no effect.
 VDB_OFFSET_API RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options,
                                                  const Tolerance& tolerance);
 

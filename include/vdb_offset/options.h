@@ -61,6 +61,7 @@ enum class Corners {
   Round,  ///< Every vertex is at the distance (phi = d, as in the paper). Faces beside it are nearer, unless all of
           ///< them can be at the distance as well, as inward at a convex edge.
   Miter,  ///< A vertex on a crease goes to where the planes around it meet that are moved by the distance.
+  Arc,    ///< Faces are at the distance, and more of them are added over sharp edges: see offset_to_tolerance().
 };
 
 struct VDB_OFFSET_API OffsetOptions {

@@ -142,8 +142,13 @@ struct VDB_OFFSET_API Refinement {
   Polygons polygons;
   std::vector<std::uint32_t> parent;  ///< Of each face: the source's face that it is a piece of; ascending.
   std::vector<VertexOrigin> added;    ///< Of each vertex that was added, in order.
+  /// With Corners::Arc: how many of the last faces lie over ridges, and of these over corners. They have no area in the
+  /// source, and for a parent a face beside them: ascending along the strips, and again along the patches.
+  std::size_t over_ridges = 0, over_corners = 0;
 
   std::size_t source_vertices() const { return polygons.positions.size() - added.size(); }
+  /// Faces in the place of the source's.
+  std::size_t faces_in_place() const { return parent.size() - over_ridges; }
 };
 
 }  // namespace vdb_offset

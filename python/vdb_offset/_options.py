@@ -49,8 +49,9 @@ OPTIONS: Dict[str, Option] = {
     "distance_z": Option(Optional[Union[float, str]], None,
                          "the distance along z, if `distance` is a single one across it, of the same sign; one of\n"
                          "them may be 0, which counts as a thousandth of the other", str),
-    "corners": Option(Optional[Literal["miter", "round"]], None,
+    "corners": Option(Optional[Literal["miter", "round", "arc"]], None,
                       '"miter": faces at the distance, at sharp edges as well; "round": vertices at the distance;\n'
+                      '"arc", of offset_to_tolerance() and check() alone: faces are added over sharp edges;\n'
                       'None: "miter", and for layers "round"'),
     "miter_limit": Option(Optional[float], None,
                           'how far a vertex on a sharp edge may go, in distances, 1 or more; None: 4'),

@@ -53,8 +53,12 @@ void require_fit(const Polygons& source, const Refinement& refinement) {
       !std::equal(source.positions.begin(), source.positions.end(), refined.positions.begin(), is_same_position))
     misfit(fmt::format("a refinement of {} vertices", vertices),
            fmt::format("one of {} vertices, or of others", refinement.source_vertices()));
-  if (refinement.parent.size() != refined.face_count() || !are_parents(refinement.parent, faces))
+  if (refinement.parent.size() != refined.face_count() || refinement.over_ridges > refinement.parent.size() ||
+      refinement.over_corners > refinement.over_ridges ||
+      !are_parents(std::span(refinement.parent).first(refinement.faces_in_place()), faces))
     misfit(fmt::format("pieces of {} faces in their order", faces), "others");
+  for (const std::uint32_t parent : std::span(refinement.parent).last(refinement.over_ridges))
+    if (parent >= faces) misfit(fmt::format("parents below {}", faces), "others");
   if (refined.face_begin.back() != refined.corners.size()) misfit("faces of all corners", "others");
   for (std::size_t f = 0; f < refined.face_count(); ++f)
     if (refined.face_begin[f + 1] < refined.face_begin[f] + 3) misfit("faces of at least 3 corners", "fewer");

@@ -85,7 +85,7 @@ void declare_measuring(CommandLine& line, CheckRequest& request) {
   line.repeated("--obstacle", "FILE", "Another mesh that nothing may touch; repeatable",
                 [&made](const std::string& text) { made.obstacles.push_back(text); });
   line.option("--clearance", "C", "How near to obstacles is too near [0]", made.clearance, parse_clearance);
-  line.option("--corners", "KIND", "What became of sharp corners: 'miter' or 'round' [miter]", made.corners,
+  line.option("--corners", "KIND", "What became of sharp corners: 'miter', 'round' or 'arc' [miter]", made.corners,
               parse_corners);
   line.option(
       "--tolerance", "T",

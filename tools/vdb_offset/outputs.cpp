@@ -28,6 +28,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
     return value ? fmt::format("{}", *value) : std::string("automatic");
   };
   const OffsetOptions& options = job.options;
+  constexpr const char* kCorners[] = {"round", "miter", "arc"};
   const char* const border = options.border == Border::Slide   ? "slide"
                              : options.border == Border::Fixed ? "fixed"
                                                                : "free";
@@ -68,7 +69,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"voxel-size", number(options.grid.voxel_size)},
           {"voxels-per-distance", number(options.grid.voxels_per_distance)},
           {"collision", options.collision == Collision::Merge ? "merge" : "limit"},
-          {"corners", job.corners() == Corners::Miter ? "miter" : "round"},
+          {"corners", kCorners[static_cast<std::size_t>(job.corners())]},
           {"miter-limit", job.corners() == Corners::Miter ? fmt::format("{}", options.miter_limit) : ""},
           {"taper", fmt::format("{}", options.taper)},
           {"solver", options.solver == Solver::Eikonal ? "eikonal" : "closest"},

@@ -99,7 +99,7 @@ struct VDB_OFFSET_API RefinedFile {
 /// - OBJ: numbers behind coordinates, texture coordinates and normals. New `v`, `vt` and `vn` lines follow the last one
 ///   of their kind, so that the numbers of the others stay; indices that count back are written anew where they would
 ///   mean others. Faces on both sides of an edge share new texture coordinates and normals if they share those at its
-///   ends. Lines (`l`) are not split.
+///   ends. Lines (`l`) are not split. Faces over ridges come last, in a group `ridge`, without normals.
 /// - PLY: floating-point properties of vertices, and colours of whole numbers; per-corner lists of texture coordinates
 ///   and colours. Other properties of added vertices are those of the vertex with the largest share. Strips of
 ///   triangles become faces.
@@ -113,9 +113,9 @@ VDB_OFFSET_API RefinedFile refine_file(const MeshFile& source, const Refinement&
 /// Writes where the vertices that were added lie, as text: behind a comment, a line `vertex face v0 v1 v2 s0 s1 s2` for
 /// each. `vertex` is its number in the refined file; `face` one of the source's faces that it lies on; v0 to v2 are
 /// corners of that face, and s0 to s2 their shares (see VertexOrigin), with the digits that read back to the same
-/// numbers. All are counted from 0. `of_file` is RefinedFile::vertex: in an STL file a vertex that was added has a line
-/// for each corner of a facet that stands there. `.gz` and `.zst` are compressed; "-" is standard output.
-/// \throw WriteError
+/// numbers. For each face over a ridge a line `face parent` follows, behind a comment. All are counted from 0.
+/// `of_file` is RefinedFile::vertex: in an STL file a vertex that was added has a line for each corner of a facet that
+/// stands there. `.gz` and `.zst` are compressed; "-" is standard output. \throw WriteError
 VDB_OFFSET_API void write_vertex_map(const std::string& path, const Refinement& refinement,
                                      std::span<const std::uint32_t> of_file = {});
 

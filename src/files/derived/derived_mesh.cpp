@@ -61,7 +61,7 @@ DerivedMesh::DerivedMesh(const MeshFile& source, const Refinement& refinement)
       mesh_(refinement.polygons.view()),
       precision_(source.precision),
       first_piece_(source.polygons.face_count() + 1, 0) {
-  for (const std::uint32_t face : refinement.parent) ++first_piece_[face + 1];
+  for (std::size_t f = 0; f < refinement.faces_in_place(); ++f) ++first_piece_[refinement.parent[f] + 1];
   for (std::uint32_t f = 0; f + 1 < first_piece_.size(); ++f) {
     first_piece_[f + 1] += first_piece_[f];
     is_kept_.push_back(has_one_like(f));
@@ -88,7 +88,7 @@ CornerOrigin DerivedMesh::corner(std::uint32_t f, std::size_t k, CornerFinder& f
   CornerOrigin found{origin(mesh_.face(f)[k]), {}};
   const std::uint32_t of = parent(f), first = source_.polygons.face_begin[of];
   if (is_shell()) found.corner.fill(shell_->source_corner(source_mesh(), f, k));
-  else if (is_kept(of)) found.corner.fill(first + static_cast<std::uint32_t>(k));
+  else if (is_kept(of) && part(f) == ShellPart::Outer) found.corner.fill(first + static_cast<std::uint32_t>(k));
   else
     for (std::size_t i = 0; i < 3; ++i)
       found.corner[i] = found.vertex.share[i] > 0 ? finder.at(of, found.vertex.vertex[i]) : first;

@@ -66,11 +66,21 @@ class DerivedMesh {
   bool is_source(ShellPart skin) const;
 
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(mesh_.face_count()); }
-  /// The faces of a part. Those of a refinement are all outer ones.
+  /// The faces of a part. Those of a refinement are outer ones, and those over ridges are its rim.
   FaceRange faces_of(ShellPart part) const;
   /// The faces that follow those which stand in the place of their parents.
   FaceRange other_faces() const { return {faces_of(ShellPart::Outer).end, face_count()}; }
-  ShellPart part(std::uint32_t f) const { return is_shell() ? shell_->part(f) : ShellPart::Outer; }
+  /// Of these the ones that lie over ridges, by strips and patches: the parents of each range are ascending.
+  std::array<FaceRange, 2> over_ridges() const {
+    const FaceRange others = other_faces();
+    const auto corners = static_cast<std::uint32_t>(is_shell() ? 0 : refinement_->over_corners);
+    return {FaceRange{others.begin, others.end - corners}, FaceRange{others.end - corners, others.end}};
+  }
+  ShellPart part(std::uint32_t f) const {
+    if (is_shell()) return shell_->part(f);
+    return f < refinement_->faces_in_place() ? ShellPart::Outer : ShellPart::Rim;
+  }
+  bool has_ridges() const { return !is_shell() && refinement_->over_ridges > 0; }
   std::uint32_t parent(std::uint32_t f) const { return is_shell() ? shell_->source_face(f) : refinement_->parent[f]; }
   /// The faces that stand in the place of one of the source's.
   FaceRange pieces_of(std::uint32_t source_face) const;
@@ -143,9 +153,9 @@ inline Vec3d DerivedMesh::position(std::uint32_t v) const {
 }
 
 inline FaceRange DerivedMesh::faces_of(ShellPart part) const {
-  const auto of_skin = is_shell() ? static_cast<std::uint32_t>(shell_->skin_faces()) : face_count();
+  const auto of_skin = static_cast<std::uint32_t>(is_shell() ? shell_->skin_faces() : refinement_->faces_in_place());
   if (part == ShellPart::Outer) return {0, of_skin};
-  if (!is_shell()) return {of_skin, of_skin};
+  if (!is_shell()) return {of_skin, part == ShellPart::Rim ? face_count() : of_skin};
   return part == ShellPart::Inner ? FaceRange{of_skin, 2 * of_skin} : FaceRange{2 * of_skin, face_count()};
 }
 

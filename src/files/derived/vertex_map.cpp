@@ -27,8 +27,15 @@ void write_vertex_map(const std::string& path, const Refinement& refinement, std
   const auto append_of_file = [&](std::string& text, std::size_t v) {
     if (of_file[v] >= first) append_origin(text, v, refinement.added[of_file[v] - first]);
   };
-  write_pieces(path, of_file.empty() ? in_sections(header, {{refinement.added.size(), append_added}})
-                                     : in_sections(header, {{of_file.size(), append_of_file}}));
+  const auto append_face = [&](std::string& text, std::size_t i) {
+    if (i == 0) text += "# face parent: a face over a ridge, and one of the source beside it\n";
+    append_integer(text, refinement.faces_in_place() + i);
+    append_integer(text += ' ', refinement.parent[refinement.faces_in_place() + i]);
+    text += '\n';
+  };
+  const Section vertices =
+      of_file.empty() ? Section{refinement.added.size(), append_added} : Section{of_file.size(), append_of_file};
+  write_pieces(path, in_sections(header, {vertices, {refinement.over_ridges, append_face}}));
 }
 
 }  // namespace vdb_offset::io

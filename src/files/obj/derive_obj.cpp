@@ -152,18 +152,19 @@ class ObjDeriver {
     end_line(text);
   }
 
-  /// The faces of the inner skin or the rim over those of a run, and the statements that they depend on.
-  std::string behind_run(std::size_t i, ShellPart part) const {
-    const bool inner = part == ShellPart::Inner;
-    std::uint32_t face = first_over(part, i);
-    const std::uint32_t end = first_over(part, i + 1);
+  /// The faces of the inner skin or the rim over those of a run, and the statements that they depend on. \param faces
+  /// those of the part, or some of them, whose parents are ascending
+  std::string behind_run(std::size_t i, ShellPart part, FaceRange faces) const {
+    const bool inner = part == ShellPart::Inner, is_shell = derived_->is_shell();
+    std::uint32_t face = first_over(faces, i);
+    const std::uint32_t end = first_over(faces, i + 1);
     if (!inner && face == end) return {};
     const bool is_first = inner ? i == 0 : face == derived_->faces_of(part).begin;
-    std::string text = is_first && inner && found_.groups_late ? "g inner\n" : is_first && !inner ? "g rim\n" : "";
+    std::string text = is_first ? title_of(part) : "";
     StateLines state = found_.runs[i].state, written = is_first ? found_.state_at_end
                                                        : inner  ? state
                                                                 : state_behind(face - 1);
-    const auto in_force = [&] { return inner ? state : with_flat_rim(state); };
+    const auto in_force = [&] { return inner || !is_shell ? state : with_flat_rim(state); };
     for_each_face_line(i, [&](const ObjLine& line, const ObjCounts& at) {
       if (inner && line.is("g")) return append_group(text, line, part);
       if (const std::size_t k = face_state_of(line.keyword); k != kNoState) {
@@ -184,6 +185,12 @@ class ObjDeriver {
   }
 
  private:
+  /// What stands in front of the first face of a part.
+  std::string title_of(ShellPart part) const {
+    if (part == ShellPart::Inner) return found_.groups_late ? "g inner\n" : "";
+    return derived_->is_shell() ? "g rim\n" : end_of_text() + "g ridge\n";
+  }
+
   Scanner scanner_at(std::uint64_t byte) const { return {source_.path, text_, byte, true, '#'}; }
   /// What stands behind a vertex's coordinates.
   Scanner tail(std::size_t v) const {
@@ -264,7 +271,7 @@ class ObjDeriver {
     return number_in(found_.corner_texture, source_corner(f, c));
   }
   std::uint64_t normal_of(std::uint32_t f, std::uint32_t c) const {
-    if (!derived_->is_shell()) return number_in(normals_.of_corner, c);
+    if (!derived_->is_shell()) return derived_->part(f) == ShellPart::Rim ? 0 : number_in(normals_.of_corner, c);
     const ShellPart part = derived_->part(f);
     const std::uint64_t own =
         part == ShellPart::Rim ? 0 : number_in(rows_of(source_).corner_normal, source_corner(f, c));
@@ -318,9 +325,8 @@ class ObjDeriver {
 
   // Of a shell.
 
-  /// The first face of a part of which the parent is in a run, or behind it.
-  std::uint32_t first_over(ShellPart part, std::size_t i) const {
-    FaceRange faces = derived_->faces_of(part);
+  /// The first of some faces of which the parent is in a run, or behind it.
+  std::uint32_t first_over(FaceRange faces, std::size_t i) const {
     if (i == runs()) return faces.end;
     while (faces.size() > 0) {
       const std::uint32_t middle = faces.begin + faces.size() / 2;
@@ -334,8 +340,11 @@ class ObjDeriver {
     const auto next = std::partition_point(found_.runs.begin(), found_.runs.end(), [&](const ObjRun& run) {
       return run.before.faces <= derived_->parent(face);
     });
-    return with_flat_rim(next->state);
+    // Behind a run its state is that of the next one.
+    return derived_->is_shell() ? with_flat_rim(next->state) : next->state;
   }
+  /// What ends the source's last line.
+  std::string end_of_text() const { return text_.ends_with('\n') ? "" : std::string(line_end_); }
 
   /// Calls visit(line, what stands before) for the lines of a run that are faces, elements, groups or statements for
   /// faces.
@@ -389,10 +398,15 @@ WrittenDocument ObjRows::derive(const SharedDerived& derived, const std::string&
   if (deriver->misplaces_faces()) written.lost.emplace_back("that the inner skin's first faces are in no object");
   const std::size_t runs = deriver->runs();
   written.file = {runs, [=](std::size_t i) { return deriver->run(i); }};
-  if (!derived->is_shell()) return written;
-  const auto part_behind = [&](ShellPart part) {
-    return Pieces{runs, [=](std::size_t i) { return deriver->behind_run(i, part); }};
+  const auto behind = [&](ShellPart part, FaceRange faces) {
+    return Pieces{runs, [=](std::size_t i) { return deriver->behind_run(i, part, faces); }};
   };
+  if (derived->has_ridges()) {
+    const auto [strips, patches] = derived->over_ridges();
+    written.file = in_a_row({written.file, behind(ShellPart::Rim, strips), behind(ShellPart::Rim, patches)});
+  }
+  if (!derived->is_shell()) return written;
+  const auto part_behind = [&](ShellPart part) { return behind(part, derived->faces_of(part)); };
   written.file = in_a_row(
       {written.file,
        in_sections(

@@ -204,6 +204,11 @@ Pieces text_with_pieces(const MeshFile& source, const SharedStlDeriver& deriver)
   return in_sections(
       {}, {{source.polygons.face_count(),
             [=](std::string& text, std::size_t f) { deriver->append_pieces(text, static_cast<std::uint32_t>(f)); }},
+           {deriver->facets(ShellPart::Rim),
+            [=](std::string& text, std::size_t i) {
+              if (i == 0) text += '\n';
+              deriver->append_facet(text, deriver->facet(ShellPart::Rim, i));
+            }},
            {1, [=](std::string& text, std::size_t) { deriver->append_rest(text); }}});
 }
 

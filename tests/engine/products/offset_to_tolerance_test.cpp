@@ -54,7 +54,7 @@ const CertifiedFaces& certified_of(const RefinedOffset& refined) { return refine
 
 /// The source's vertices come first and are where they were, the pieces of its faces stand in their place.
 void require_source_kept(const Polygons& mesh, const RefinedOffset& refined) {
-  const auto& [polygons, parent, added] = refined.refinement;
+  const auto& [polygons, parent, added, over_ridges, over_corners] = refined.refinement;
   REQUIRE(refined.result.positions.size() == polygons.positions.size());
   REQUIRE(refined.refinement.source_vertices() == mesh.positions.size());
   CHECK(std::equal(mesh.positions.begin(), mesh.positions.end(), polygons.positions.begin()));

@@ -47,7 +47,8 @@ void declare_distances(CommandLine& line, Draft& draft) {
   line.option(
       "--corners", "KIND",
       "At sharp corners, 'miter' puts faces at the distance (vertices on sharp edges are farther), 'round' puts "
-      "vertices at the distance (faces at sharp edges are nearer) [miter; with --layers round]",
+      "vertices at the distance (faces at sharp edges are nearer), 'arc' adds faces over sharp edges, round to within "
+      "--tolerance [miter; with --layers round]",
       request.corners, parse_corners);
   line.option("--miter-limit", "L", "A vertex on a sharp edge goes no farther than this many distances, at least 1 [4]",
               request.miter_limit, parse_miter_limit);
@@ -91,14 +92,15 @@ void declare_tolerance(CommandLine& line, Draft& draft) {
   line.option("--tolerance", "T",
               "Split faces until every point of them is proven to be within T of the distance, wherever vertices reach "
               "it: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
-              "take its place",
+              "take its place. With --corners arc: how far the faces over sharp edges may be off [1%]",
               request.tolerance, parse_tolerance, request.text);
   line.option("--max-faces", "N",
               "With --tolerance: make no more faces than this [20 times as many as INPUT has, at least a million]",
               request.tolerance.most_faces, count_between("--max-faces", 1, std::numeric_limits<int>::max()));
-  line.option("--refined-source", "FILE", "With --tolerance: write INPUT with the faces that OUTPUT has",
-              request.refined_source);
-  line.option("--map", "FILE", "With --tolerance: write where in INPUT each added vertex lies, as text", request.map);
+  line.option("--refined-source", "FILE",
+              "With --tolerance or --corners arc: write INPUT with the faces that OUTPUT has", request.refined_source);
+  line.option("--map", "FILE",
+              "With --tolerance or --corners arc: write where in INPUT each added vertex lies, as text", request.map);
 }
 
 /// Declares the options that say which faces move, and what is around them.
@@ -333,6 +335,11 @@ void complete(Draft& draft) {
   const auto has = [&](const char* option) { return request.given.contains(option); };
   if (has("--mode iso")) request.iso = draft.iso;
   if (has("--tolerance")) request.tolerance = draft.tolerance;
+  if (request.corners == Corners::Arc && !request.tolerance) {
+    request.tolerance = draft.tolerance;
+    request.tolerance->text = "1%";
+    request.tolerance->tolerance.share = parse_tolerance(request.tolerance->text).share;
+  }
   if (has("--layers") || has("--heights")) request.layers = draft.layers;
   if (draft.no_sync) request.sync = OutputFiles::Sync::No;
   constexpr std::size_t kParts = 5, kPartsTaken = 4;  // four fifths of the free memory, as --help says

@@ -61,7 +61,7 @@ void require_with_files(const Request& request) {
     given.insert(kLevelSet);
   require_rules(given, {{{"--faceted", "--fit-tolerance", "--collision cut"}, NeedsAnyOf, {kModel}},
                         {{"--inner", "--layers", "--heights", "--mode iso", "--tolerance", "--distance-xy", "--fit",
-                          "--symmetry", "--miter-limit", "--taper", "--collision merge"},
+                          "--symmetry", "--miter-limit", "--taper", "--collision merge", "--corners arc"},
                          Excludes,
                          {kModel}},
                         {{"--distance-of", "--only", "--faceted"}, Excludes, {kHollowModel}},
@@ -156,11 +156,13 @@ void require_together(const GivenNames& given) {
       {{"--first-height", "--total-thickness", "--growth"}, NeedsAnyOf, {"--layers"}},
       {{"--structured"}, NeedsAnyOf, {"--layers", "--heights"}},
       {{"--layers"}, NeedsOneOf, {"--first-height", "--total-thickness", "--heights"}},
-      {{"--max-faces", "--refined-source", "--map", "--strict-certified"}, NeedsAnyOf, {"--tolerance"}},
+      {{"--max-faces"}, NeedsAnyOf, {"--tolerance"}},
+      {{"--max-faces"}, Excludes, {"--corners arc"}},
+      {{"--refined-source", "--map", "--strict-certified"}, NeedsAnyOf, {"--tolerance", "--corners arc"}},
       {{"--distance-xy", "--distance-z", "--distance-of", "--blend", "--fit", "--shell", "--layers", "--heights",
         "--paths", "--save-vdb", "--dry-run"},
        Excludes,
-       {"--tolerance"}},
+       {"--tolerance", "--corners arc"}},
       {{"--distance", "--distance-from", "--shell", "--save-vdb", "--distance-of", "--blend"},
        Excludes,
        {"--layers", "--heights", "--distance-xy", "--distance-z", "--fit"}},
@@ -192,16 +194,17 @@ void require_page(const Request& request) {
 }
 
 void require_miters(const Request& request) {
-  const bool are_round = request.corners ? request.corners == Corners::Round : request.layers.has_value();
-  require(!request.miter_limit || !are_round, "--miter-limit needs --corners miter");
+  const bool are_mitered = request.corners ? request.corners == Corners::Miter : !request.layers;
+  require(!request.miter_limit || are_mitered, "--miter-limit needs --corners miter");
 }
 
 void require_options_for(const Request& request, bool curves, const char* meshes) {
   if (const char* const of_curves = first_given(request, {"--close", "--flatten"}); of_curves && !curves)
     throw UsageError(fmt::format("{}: expected curves, as this is not for meshes", of_curves));
-  const char* of_meshes = first_given(request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle",
-                                                "--shell", "--mode iso", "--tolerance", "--orient fix-direction-only",
-                                                "--orient fix-cavities", "--deflection", "--fit", "--taper"});
+  const char* of_meshes =
+      first_given(request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle", "--shell", "--mode iso",
+                            "--tolerance", "--corners arc", "--orient fix-direction-only", "--orient fix-cavities",
+                            "--deflection", "--fit", "--taper"});
   if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";
   if (of_meshes && curves)
     throw UsageError(fmt::format("{}: expected {}, as this is not for curves", of_meshes, meshes));

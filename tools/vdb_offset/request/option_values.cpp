@@ -150,8 +150,8 @@ Border parse_border(const std::string& text) {
 
 Corners parse_corners(const std::string& text) {
   if (text == "mitre") return Corners::Miter;
-  constexpr Corners kCorners[] = {Corners::Miter, Corners::Round};
-  return kCorners[parse_word("--corners", text, {"miter", "round"})];
+  constexpr Corners kCorners[] = {Corners::Miter, Corners::Round, Corners::Arc};
+  return kCorners[parse_word("--corners", text, {"miter", "round", "arc"})];
 }
 
 double parse_miter_limit(const std::string& text) {

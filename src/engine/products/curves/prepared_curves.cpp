@@ -45,6 +45,7 @@ void require_one_for_each_point(CurvesView curves, std::span<const Distances> di
 
 CurvePlan plan_ribbon(CurvesView curves, const OffsetOptions& options, int threads, const Reach& farthest,
                       const Yield& yield) {
+  if (options.corners == Corners::Arc) throw InvalidInput("corners: expected miter or round for curves, got arc");
   CurvePlan planned{chains_in_plane(curves), {}, {}, {}};
   OffsetStatistics& statistics = planned.statistics;
   statistics.threads = threads;

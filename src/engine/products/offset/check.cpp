@@ -24,6 +24,7 @@
 #include "motion/parts/part_miters.h"
 #include "products/offset/field_stage.h"
 #include "products/offset/prepared_mesh.h"
+#include "products/offset/stand_off.h"
 #include "space/query/closest_query.h"
 #include "space/surface/border_planes.h"
 #include "valid/faults/face_error.h"
@@ -39,7 +40,8 @@ namespace {
 // Vertices between two times that progress is reported: milliseconds. Not measured.
 constexpr std::size_t kVerticesTold = 1024;
 
-Corners corners_of(const CheckOptions& options) { return options.corners.value_or(Corners::Miter); }
+/// Vertices that arcs leave out may be mitered.
+Corners corners_of(const CheckOptions& of) { return of.corners == Corners::Round ? Corners::Round : Corners::Miter; }
 
 void require_usable(PolygonView source, std::span<const Vec3d> positions, const CheckOptions& options) {
   if (source.face_count() == 0) throw InvalidInput("check: expected a source with faces, found none");
@@ -335,8 +337,10 @@ std::optional<CertifiedFaces> prove_faces(const MeshParts& parts, const ClosestQ
     asked[w] = distances[w];
     tolerance[w] = share > 0 ? share * std::abs(asked[w]) : length;
   }
+  const bool has_arcs = options.corners == Corners::Arc;  // of which all is to be at the distance
+  const Corners corners = has_arcs ? Corners::Round : corners_of(options);
   CertifiedFaces certified =
-      certify({query, surface, faces, source, in_offset, asked, tolerance, states, corners_of(options)}, &progress);
+      certify({query, surface, faces, source, in_offset, asked, tolerance, states, corners, has_arcs}, &progress);
   certified.share = share;
   certified.length = length;
   return certified;
@@ -389,9 +393,8 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   if (!options.metric.even()) constrained.file = &file;
   if (has_tolerance(options)) constrained.vertex_error = surface.vertex_error;
   result.torn = count_torn(surface, mesh, positions, options.precision);
-  result.distances = options.distance
-                         ? *options.distance
-                         : Distances(find_distance(constrained, in_offset, options.corners.value_or(Corners::Miter)));
+  result.distances =
+      options.distance ? *options.distance : Distances(find_distance(constrained, in_offset, corners_of(options)));
   std::size_t disagreeing = 0;
   const Distances distances = distances_on_parts(parts, options.border, result.distances, disagreeing);
   result.distances = distances_of_input(surface, distances);
@@ -402,7 +405,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
     return;
   }
   std::optional<ExactCorners> exact;
-  if (options.exact && options.metric.even())
+  if (options.exact && options.metric.even() && options.corners != Corners::Arc)
     exact.emplace(*options.exact, space.view(), options.only, parts.moving_part);
   const WantedMiters miters =
       find_miters(parts, query, constrained.obstacles, exact ? &*exact : nullptr, distances, mesh, options);
@@ -436,7 +439,11 @@ CheckResult check_offset(PolygonView source, std::span<const Vec3d> positions, c
   result.states.assign(positions.size(), VertexState::Unused);
   result.achieved.assign(positions.size(), 0.0);
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  arena.execute([&] { measure(source, positions, options, result); });
+  CheckOptions own = options;
+  std::vector<Vec3d> off;
+  if (own.corners == Corners::Arc)
+    source.positions = off = positions_off_source(source, positions, std::exchange(own.weld, {}));
+  arena.execute([&] { measure(source, positions, own, result); });
   return result;
 }
 

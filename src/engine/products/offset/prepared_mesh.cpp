@@ -95,6 +95,8 @@ void require_usable(PolygonView mesh, std::span<const Distances> distances, cons
                          " vertices, got " + std::to_string(each.count()));
   if (!(options.clearance >= 0) || !std::isfinite(options.clearance))
     throw InvalidInput("clearance: expected a length >= 0, got " + std::to_string(options.clearance));
+  if (options.corners == Corners::Arc)
+    throw InvalidInput("corners: expected miter or round, as only an offset to a tolerance has faces for arcs");
   if (!(options.taper >= 0) || !std::isfinite(options.taper))
     throw InvalidInput("taper: expected a number >= 0, got " + std::to_string(options.taper));
 }

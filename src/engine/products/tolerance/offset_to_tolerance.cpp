@@ -26,6 +26,7 @@
 #include "ground/system/call_progress.h"
 #include "ground/system/progress_count.h"
 #include "ground/system/stage_timer.h"
+#include "products/arcs/offset_with_arcs.h"
 #include "products/offset/field_stage.h"
 #include "products/offset/make_results.h"
 #include "products/offset/prepared_mesh.h"
@@ -367,7 +368,7 @@ class RefinedRun {
 double Tolerance::at(double distance) const { return share > 0 ? share * std::abs(distance) : length; }
 
 RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options, const Tolerance& tolerance) {
-  vdb_offset::require_usable(mesh, {&options.distance, 1}, options);
+  if (options.corners != Corners::Arc) vdb_offset::require_usable(mesh, {&options.distance, 1}, options);
   require_usable(options, tolerance);
   std::vector<Vec3d> rounded;
   if (tolerance.precision.rounds_all) {
@@ -376,6 +377,7 @@ RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options
     for (Vec3d& position : rounded) position = precision(position);
     mesh.positions = rounded;
   }
+  if (options.corners == Corners::Arc) return offset_with_arcs(mesh, options, tolerance);
   return in_arena(options.threads, [&](int threads) { return RefinedRun(mesh, options, tolerance, threads).run(); });
 }
 

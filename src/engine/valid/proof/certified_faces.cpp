@@ -49,8 +49,9 @@ Verdict judge(const CertifiedMesh& mesh, const OffsetProver& prover, const Offse
   };
   if (of_corners([&](std::uint32_t v) { return mesh.asked[v] == 0; })) return {};
   Verdict verdict;
-  const Vec3d& first = mesh.source[face.vertex[0]];
-  verdict.area = (mesh.source[face.vertex[1]] - first).cross(mesh.source[face.vertex[2]] - first).length() / 2;
+  const std::span<const Vec3d> measured = mesh.by_area_moved ? mesh.positions : mesh.source;
+  const Vec3d& first = measured[face.vertex[0]];
+  verdict.area = (measured[face.vertex[1]] - first).cross(measured[face.vertex[2]] - first).length() / 2;
   verdict.is_there = of_corners([&](std::uint32_t v) { return is_there(mesh.states[v]); });
   // Where the side changes no tolerance is given, as the distance is 0 somewhere.
   if (!of_corners([&](std::uint32_t v) { return mesh.asked[v] * mesh.asked[face.vertex[0]] > 0; })) return verdict;

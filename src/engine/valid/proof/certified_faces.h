@@ -31,6 +31,7 @@ struct CertifiedMesh {
   std::span<const double> tolerance;  ///< World units.
   std::span<const VertexState> states;
   Corners corners;
+  bool by_area_moved = false;  ///< Faces count by their area in the offset: those over ridges have none in the source.
 };
 
 /// A face for its proof. \pre all of its vertices are asked to go to one side
