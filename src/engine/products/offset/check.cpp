@@ -392,7 +392,7 @@ void measure(PolygonView mesh, std::span<const Vec3d> positions, const CheckOpti
   const FileFrame file{space, in_file, moved_in_file};
   if (!options.metric.even()) constrained.file = &file;
   if (has_tolerance(options)) constrained.vertex_error = surface.vertex_error;
-  result.torn = count_torn(surface, mesh, positions, options.precision);
+  if (options.corners != Corners::Arc) result.torn = count_torn(surface, mesh, positions, options.precision);
   result.distances =
       options.distance ? *options.distance : Distances(find_distance(constrained, in_offset, corners_of(options)));
   std::size_t disagreeing = 0;

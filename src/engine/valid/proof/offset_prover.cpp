@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace vdb_offset {
@@ -149,7 +150,13 @@ class OffsetProver::Recursion {
     Proof proof{Certainty::Proven, 0};
     if (!none_too_near || !none_too_far) {
       proof = judge_middle(piece, middle, nearest, none_too_far);
-      if (proof.certainty == Certainty::Proven) proof = look_at_halves(piece, first, none_too_far);
+      if (proof.certainty == Certainty::Proven) {
+        // Every other time, as such a part may be thin.
+        std::optional<Cut> cut;
+        if (!none_too_far && depth_ % 2 == 0 && witnesses.nearest[0].triangle != kNone)
+          cut = edge_of_witness(piece, witnesses.nearest[0].triangle);
+        proof = look_at_parts(piece, cut.value_or(middle_of_longest(piece)), first, none_too_far);
+      }
     }
     list_.resize(first);
     return proof;
@@ -173,26 +180,62 @@ class OffsetProver::Recursion {
     return {Certainty::Off, nearest > asked ? error_at(query_(middle, 0).distance) : error};
   }
 
-  /// Looks at both halves, on either side of the middle of the longest edge.
-  Proof look_at_halves(const Piece& piece, std::size_t first, bool none_too_far) {
-    int longest = 0;
+  /// Where a piece is parted: on its edge from corner a to b, by the share of b.
+  struct Cut {
+    int a, b;
+    double share;
+  };
+
+  static Cut middle_of_longest(const Piece& piece) {
+    Cut cut{0, 1, 0.5};
     double length = -1;
     for (int k = 0; k < 3; ++k) {
       const double squared = (piece.x[(k + 1) % 3] - piece.x[k]).lengthSqr();
-      if (squared > length) {
-        length = squared;
-        longest = k;
-      }
+      if (squared > length) length = squared, cut = {k, (k + 1) % 3, 0.5};
     }
+    return cut;
+  }
+
+  /// Where the piece leaves what one triangle of the surface is a witness of, on the longest edge that does so well
+  /// away from its ends: what lies over several large triangles needs few pieces then. Nothing if no edge does.
+  std::optional<Cut> edge_of_witness(const Piece& piece, std::uint32_t t) const {
+    constexpr double kLeastShare = 0.02;  // not measured
+    constexpr int kHalvings = 12;
+    const auto is_near = [&](const Vec3d& x, double most) {
+      return surface_.closest_on(t, x).squared_distance <= most * most;
+    };
+    std::optional<Cut> cut;
+    double length = -1;
+    for (int a = 0; a < 3; ++a)
+      for (const int b : {(a + 1) % 3, (a + 2) % 3}) {
+        const double squared = (piece.x[b] - piece.x[a]).lengthSqr();
+        if (squared <= length || !is_near(piece.x[a], piece.most(a)) || is_near(piece.x[b], piece.most(b))) continue;
+        double near = 0, far = 1;
+        for (int i = 0; i < kHalvings; ++i) {
+          const double share = (near + far) / 2;
+          const bool is_in = is_near(piece.x[a] + (piece.x[b] - piece.x[a]) * share,
+                                     piece.most(a) + (piece.most(b) - piece.most(a)) * share);
+          (is_in ? near : far) = share;
+        }
+        if (near < kLeastShare || near > 1 - kLeastShare) continue;
+        length = squared;
+        cut = Cut{a, b, near};
+      }
+    return cut;
+  }
+
+  /// Looks at both parts of a piece.
+  Proof look_at_parts(const Piece& piece, const Cut& cut, std::size_t first, bool none_too_far) {
     const std::size_t end = list_.size();
-    const int a = longest, b = (longest + 1) % 3;
-    for (const auto& [moved, kept] : {std::pair{a, b}, {b, a}}) {
-      Piece half = piece;
-      half.x[moved] = (piece.x[a] + piece.x[b]) / 2.0;
-      for (auto* const numbers : {&half.asked, &half.tolerance, &half.over_plane})
-        (*numbers)[moved] = ((*numbers)[moved] + (*numbers)[kept]) / 2;
+    const auto between = [&](const auto& of) { return of[cut.a] * (1 - cut.share) + of[cut.b] * cut.share; };
+    for (const int moved : {cut.a, cut.b}) {
+      Piece part = piece;
+      part.x[moved] = between(piece.x);
+      part.asked[moved] = between(piece.asked);
+      part.tolerance[moved] = between(piece.tolerance);
+      part.over_plane[moved] = between(piece.over_plane);
       ++depth_;
-      const Proof proof = look_at(half, first, end, none_too_far);
+      const Proof proof = look_at(part, first, end, none_too_far);
       --depth_;
       if (proof.certainty != Certainty::Proven) return proof;
     }
