@@ -10,7 +10,7 @@ from ._results import Block, Check, Iso, IsoShell, Layers, Offset, Refined, Shel
 
 def offset_several(
     vertices: np.ndarray, faces: Faces, distances: Sequence[Distance], *,
-    distance_z: Union[float, str, None] = None, corners: Optional[Literal['miter', 'round']] = None,
+    distance_z: Union[float, str, None] = None, corners: Optional[Literal['miter', 'round', 'arc']] = None,
     miter_limit: Optional[float] = None, collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -26,7 +26,7 @@ def offset_several(
 
 def offset(
     vertices: np.ndarray, faces: Faces, distance: Distance, *, distance_z: Union[float, str, None] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -42,7 +42,7 @@ def offset(
 
 def offset_curves_several(
     points: np.ndarray, curves: Faces, distances: Sequence[Distance], *, distance_z: Union[float, str, None] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
     voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
@@ -52,7 +52,7 @@ def offset_curves_several(
 
 def offset_curves(
     points: np.ndarray, curves: Faces, distance: Distance, *, distance_z: Union[float, str, None] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
     voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
@@ -62,7 +62,7 @@ def offset_curves(
 
 def offset_to_tolerance(
     vertices: np.ndarray, faces: Faces, distance: Distance, tolerance: Union[float, str], *, max_faces: int = 0,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -90,7 +90,7 @@ def fit(
 
 def shell_several(
     vertices: np.ndarray, faces: Faces, distances: Sequence[Distance], *, inner: Optional[Distance] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -106,7 +106,7 @@ def shell_several(
 
 def shell(
     vertices: np.ndarray, faces: Faces, distance: Distance, *, inner: Optional[Distance] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -124,7 +124,7 @@ def layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
     growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
-    cells: Literal['any', 'openfoam'] = 'any', corners: Optional[Literal['miter', 'round']] = None,
+    cells: Literal['any', 'openfoam'] = 'any', corners: Optional[Literal['miter', 'round', 'arc']] = None,
     miter_limit: Optional[float] = None, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -140,10 +140,11 @@ def layers(
 def curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
     first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None, close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
-    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
-    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
+    close: bool = False, precision: Union[Literal['double', 'single'], int] = 'double',
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Layers: ...
 
 def iso_surface(
@@ -180,7 +181,7 @@ def structured_layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
     growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
@@ -195,16 +196,17 @@ def structured_layers(
 def structured_curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
     first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None, close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
-    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
-    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
+    close: bool = False, precision: Union[Literal['double', 'single'], int] = 'double',
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
 def check(
     vertices: np.ndarray, faces: Faces, positions: np.ndarray, distance: Optional[Distance] = None, *,
     tolerance: Union[float, str, None] = None, distance_z: Union[float, str, None] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -220,7 +222,7 @@ def check(
 
 def check_curves(
     points: np.ndarray, curves: Faces, positions: np.ndarray, distance: Optional[Distance] = None, *,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', close: bool = False,
     precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
     voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,

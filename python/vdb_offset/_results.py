@@ -60,7 +60,8 @@ class Refined(Offset):
 
     #: (v, 3) positions in the source, which pair with `positions`.
     source: np.ndarray
-    #: The faces, (m, k) or a pair of offsets and corners, and (m,) the input's faces that they are pieces of.
+    #: The faces, (m, k) or a pair of offsets and corners, and (m,) the input's faces that they are pieces of. With
+    #: corners="arc" the input's faces come first, then those over sharp edges, each with a face beside it.
     faces: Faces
     parents: np.ndarray
     #: Of each added vertex: `faces` (a,), a face of the input that it lies on, `vertices` (a, 3), corners of that, and

@@ -18,7 +18,7 @@ def with_positions(
 
 def offset_mesh(
     mesh: Any, distance: Distance, *, distance_z: Union[float, str, None] = None,
-    corners: Optional[Literal['miter', 'round']] = None, miter_limit: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
     border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,

@@ -17,7 +17,7 @@ FILES = {
     'flag with a value': ('distance = 1\nstrict = "yes"\n', 1, 'all.toml:2: strict: expected true or false'),
     'value that is none': ('distance = true\n', 1, 'all.toml:1: distance: expected a value, not true or false'),
     'empty value': ('distance = ""\n', 1, "expected a value, got ''"),
-    'wrong value': ('distance = 1\ncorners = "bevel"\n', 1, "--corners: expected 'miter' or 'round', got 'bevel'"),
+    'wrong value': ('distance = 1\ncorners = "bevel"\n', 1, "--corners: expected 'miter', 'round' or 'arc', got 'bevel'"),
     'twice': ('distance = 1\ndistance = 2\n', 1, 'all.toml:2: expected TOML'),
     'several of one': ('distance = 1\ncorners = ["round", "miter"]\n', 1, '--corners'),
     'lists in lists': ('distance = [[1, 2]]\n', 1, 'all.toml:1: expected a string, a number, true, false or an array'),

@@ -165,6 +165,19 @@ class Offsets(BesideTheCommand):
         there = np.einsum("ik,ikj->ij", added["shares"], CUBE[added["vertices"]])
         np.testing.assert_allclose(there, refined.source[8:], atol=1e-12)
 
+    def test_arcs(self):
+        run = self.run_command
+        run.write("cube.obj", CUBE, QUADS)
+        run("cube.obj", "made.obj", "--distance=0.1", "--corners", "arc", "--precision", "17")
+        opened = vdb_offset.offset_to_tolerance(CUBE, QUADS, 0.1, "1%", corners="arc", precision=17)
+        self.assertTrue((run.read("made.obj")[0] == opened.positions).all())
+        self.assertEqual(opened.parents[:6].tolist(), list(range(6)))
+        self.assertGreater(len(opened.parents), 6 + 12)
+        self.assertTrue((opened.source[8:] == CUBE[opened.added["vertices"][:, 0]]).all())
+        found = vdb_offset.check(opened.source, opened.faces, opened.positions, 0.1, corners="arc", tolerance="1%")
+        self.assertTrue(found.valid)
+        self.assertEqual(found.statistics["certified"]["certified"], 1)
+
     def test_fit(self):
         run = self.run_command
         near = CUBE * [1, 1, 0.5] + [0, 0, 1.02]
