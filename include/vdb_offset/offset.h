@@ -125,7 +125,7 @@ struct VDB_OFFSET_API Tolerance {
   double share = 0;   ///< Of the distance at each point, above 1e-5 and below 1; or 0, and
   double length = 0;  ///< world units, above 1e-5 of the largest distance.
   /// No more are made, but for the pieces of faces that vertices hang on; 0: 20 times as many as the mesh has, at least
-  /// a million.
+  /// a million. Arcs that would need more are refused.
   std::size_t most_faces = 0;
   /// What the file that the refined mesh is for keeps of coordinates: those of vertices that are added are rounded to
   /// that; if it `rounds_all`, those of the mesh first, so that what is offset is what will be read.
@@ -133,6 +133,8 @@ struct VDB_OFFSET_API Tolerance {
 
   /// The tolerance where the distance is `distance`, world units.
   double at(double distance) const;
+  /// How many faces may be made of a mesh that has so many.
+  std::size_t limit_of_faces(std::size_t mesh_faces) const;
 };
 
 struct RefinedOffset {
@@ -157,7 +159,8 @@ struct RefinedOffset {
 /// The refinement has the mesh's faces in their order, with the copies of their corners; then strips of faces, edge by
 /// edge, then patches over corners (`over_ridges` and `over_corners` count them), each with one of the mesh's faces
 /// beside it for a parent. Ridges are not opened at borders of the surface or of the part that moves, in planes that
-/// vertices stay in, at edges of more than two faces, and where their strips would cross. `exact` has no effect.
+/// vertices stay in, at edges of more than two faces, and where their strips would cross. `exact` has no effect. \throw
+/// OutOfBudget before more faces are made than may be
 VDB_OFFSET_API RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options,
                                                  const Tolerance& tolerance);
 

@@ -94,9 +94,11 @@ void declare_tolerance(CommandLine& line, Draft& draft) {
               "it: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
               "take its place. With --corners arc: how far the faces over sharp edges may be off [1%]",
               request.tolerance, parse_tolerance, request.text);
-  line.option("--max-faces", "N",
-              "With --tolerance: make no more faces than this [20 times as many as INPUT has, at least a million]",
-              request.tolerance.most_faces, count_between("--max-faces", 1, std::numeric_limits<int>::max()));
+  line.option(
+      "--max-faces", "N",
+      "With --tolerance or --corners arc: make no more faces than this [20 times as many as INPUT has, at least a "
+      "million]",
+      request.tolerance.most_faces, count_between("--max-faces", 1, std::numeric_limits<int>::max()));
   line.option("--refined-source", "FILE",
               "With --tolerance or --corners arc: write INPUT with the faces that OUTPUT has", request.refined_source);
   line.option("--map", "FILE",

@@ -70,7 +70,8 @@ class ArcRun {
     const AskedDistances asked = ask(prepared_, {&options_.distance, 1});
     std::vector<PreparedMesh::Marched> marched = prepared_.march(asked.moved, ridges_of(options_));
     prepared_.field() = {};
-    opened_.emplace(prepared_, asked.moved.front(), marched.front().paths, share(), options_.miter_limit);
+    opened_.emplace(prepared_, asked.moved.front(), marched.front().paths, share(), options_.miter_limit,
+                    tolerance_.limit_of_faces(mesh_.face_count()));
     made_ = opened_->faces();
     seconds_ = prepared_.statistics().seconds;
     RefinedOffset result;

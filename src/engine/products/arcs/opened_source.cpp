@@ -6,16 +6,20 @@
 // ray.
 #include "products/arcs/opened_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "ground/numbers/disjoint_sets.h"
 #include "ground/numbers/index_set.h"
 #include "ground/system/parallel.h"
 #include "products/arcs/ray_ends.h"
+#include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {
@@ -60,10 +64,30 @@ class ChainSteps {
   std::vector<std::size_t> steps_;  // of the first of each chain
 };
 
+/// \throw OutOfBudget if about more faces would be made
+void require_few(const ChainSteps& chains, double step, std::size_t mesh_faces, std::size_t most,
+                 std::span<const OpenedVertex> vertices) {
+  double count = static_cast<double>(mesh_faces);
+  for (const OpenedVertex& vertex : vertices) {
+    double around = 0;
+    std::size_t ridges = 0;
+    for (std::size_t i = 0; i < vertex.fan.is_open.size(); ++i)
+      if (vertex.fan.is_open[i]) around += static_cast<double>(chains(vertex.fan, i)), ++ridges;
+    count += around;  // half of two triangles a step: each strip has two ends
+    // A patch is about as many rings wide as its loop goes around.
+    if (ridges > 2) count += around * around * step / 2;
+  }
+  if (count > static_cast<double>(most))
+    throw OutOfBudget(
+        fmt::format("arcs: expected at most {} faces, got about {:.2g}. Use a larger tolerance, or allow "
+                    "more faces",
+                    most, count));
+}
+
 }  // namespace
 
 OpenedSource::OpenedSource(const PreparedMesh& mesh, const Distances& distances, const Paths& plain, double tolerance,
-                           double longest)
+                           double longest, std::size_t most_faces)
     : mesh_(mesh),
       distances_(distances),
       plain_(plain),
@@ -72,7 +96,7 @@ OpenedSource::OpenedSource(const PreparedMesh& mesh, const Distances& distances,
   const RidgeFinder finder(mesh, distances, tolerance);
   find_vertices(finder);
   open_further(finder);
-  lay(finder);
+  lay(finder, most_faces);
   find_ends(longest);
 }
 
@@ -118,9 +142,10 @@ void OpenedSource::open_further(const RidgeFinder& finder) {
 }
 
 /// Lays arcs and patches, and leaves vertices out at which that is not possible.
-void OpenedSource::lay(const RidgeFinder& finder) {
+void OpenedSource::lay(const RidgeFinder& finder, std::size_t most_faces) {
   const double step = arc_step(tolerance_);
   const ChainSteps chains(finder, opened_, step);
+  require_few(chains, step, mesh_.mesh().face_count(), most_faces, opened_);
   const ArcSteps steps = [&](const RidgeFan& fan, std::size_t edge) { return chains(fan, edge); };
   std::vector<std::uint8_t> is_laid(opened_.size(), 0);
   for_each_index(opened_.size(),

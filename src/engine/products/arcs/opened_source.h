@@ -29,9 +29,9 @@ class OpenedSource {
  public:
   /// Keeps a reference to the mesh. \param distances of all vertices \param plain where vertices go that are not opened
   /// \param tolerance how far the faces over ridges may be off the distance, as a share of it \param longest the most
-  /// that a copy goes, in distances
+  /// that a copy goes, in distances \param most_faces that may be made \throw OutOfBudget before more are
   OpenedSource(const PreparedMesh& mesh, const Distances& distances, const Paths& plain, double tolerance,
-               double longest);
+               double longest, std::size_t most_faces);
 
   /// Whether no ridge is opened.
   bool empty() const;
@@ -59,7 +59,7 @@ class OpenedSource {
 
   void find_vertices(const RidgeFinder& finder);
   void open_further(const RidgeFinder& finder);
-  void lay(const RidgeFinder& finder);
+  void lay(const RidgeFinder& finder, std::size_t most_faces);
   void find_ends(double longest);
 
   const PreparedMesh& mesh_;

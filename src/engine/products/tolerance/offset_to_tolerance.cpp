@@ -43,9 +43,6 @@ namespace {
 
 // The least tolerance, as a share of the distance. Reasoned: ten times as much as vertices may be off.
 constexpr double kLeastTolerance = 1e-5;
-// Faces that may be made for each face of the mesh, and in any case. Told in Tolerance.
-constexpr std::size_t kFacesForEach = 20, kFacesInAnyCase = 1000000;
-
 void require_usable(const OffsetOptions& options, const Tolerance& tolerance) {
   const bool by_share = tolerance.share != 0, by_length = tolerance.length != 0;
   if (by_share == by_length) throw InvalidInput("tolerance: expected a share or a length, got both or none of them");
@@ -138,11 +135,6 @@ class RefinedRun {
     return vertices;
   }
 
-  std::size_t most_faces() const {
-    return tolerance_.most_faces > 0 ? tolerance_.most_faces
-                                     : std::max(kFacesForEach * mesh_.face_count(), kFacesInAnyCase);
-  }
-
   /// Calls visit(face, corners) for the triangles of faces that the surface has not, such as are lines; but not of
   /// repeated faces, which are split as those are that they repeat.
   template <class Visit>
@@ -229,8 +221,8 @@ class RefinedRun {
                                       options_.miter_limit, std::move(displacement));
     triangles_.emplace(surface(), prepared_.source(), mesh_triangles());
     Refiner refiner(prepared_.parts(), prepared_.query(), targets, *triangles_, std::move(vertices),
-                    {prepared_.corners(), most_faces(), mesh_.face_count(), tolerance_.precision, edges_left_out(),
-                     small_crossing_triangles()});
+                    {prepared_.corners(), tolerance_.limit_of_faces(mesh_.face_count()), mesh_.face_count(),
+                     tolerance_.precision, edges_left_out(), small_crossing_triangles()});
     const ProgressCallback of_splitting = part_of(progress_, kCoarseShare, kSplitShare);
     Progress progress(of_splitting, Stage::Refine, kProgress);
     std::size_t told = 0;
@@ -366,6 +358,11 @@ class RefinedRun {
 }  // namespace
 
 double Tolerance::at(double distance) const { return share > 0 ? share * std::abs(distance) : length; }
+
+std::size_t Tolerance::limit_of_faces(std::size_t mesh_faces) const {
+  constexpr std::size_t kFacesForEach = 20, kFacesInAnyCase = 1000000;  // as the declaration says
+  return most_faces > 0 ? most_faces : std::max(kFacesForEach * mesh_faces, kFacesInAnyCase);
+}
 
 RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options, const Tolerance& tolerance) {
   if (options.corners != Corners::Arc) vdb_offset::require_usable(mesh, {&options.distance, 1}, options);

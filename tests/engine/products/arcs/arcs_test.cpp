@@ -207,6 +207,21 @@ TEST_CASE("arcs: an offset that may not have more faces refuses them") {
   CHECK_THROWS_AS(offset(mesh.view(), options), InvalidInput);
 }
 
+TEST_CASE("arcs: a tolerance that asks for too many faces is refused before they are made") {
+  const Polygons mesh = shapes::gear(40, 0.8, 1, 0.3, 0.2, 6);
+  CHECK_THROWS_AS(with_arcs(mesh, 0.001, 1e-5), OutOfBudget);
+  OffsetOptions options;
+  options.distance = 0.2;
+  options.corners = Corners::Arc;
+  Tolerance tolerance;
+  tolerance.share = 0.01;
+  tolerance.most_faces = 500;
+  const Polygons cube = shapes::box({1, 1, 1}, 1, true);
+  CHECK_THROWS_AS(offset_to_tolerance(cube.view(), options, tolerance), OutOfBudget);
+  tolerance.most_faces = 5000;
+  CHECK(offset_to_tolerance(cube.view(), options, tolerance).refinement.parent.size() < 5000);
+}
+
 TEST_CASE("arcs: patches are as near to the sphere as the arcs around them") {
   const double tolerance = GENERATE(0.01, 0.001), step = 0.92 * 2 * std::acos(1 - tolerance);
   const std::array<std::array<Vec3d, 3>, 3> corners{{{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)},
