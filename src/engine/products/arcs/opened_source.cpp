@@ -79,7 +79,7 @@ void require_few(const ChainSteps& chains, double step, std::size_t mesh_faces, 
   }
   if (count > static_cast<double>(most))
     throw OutOfBudget(
-        fmt::format("arcs: expected at most {} faces, got about {:.2g}. Use a larger tolerance, or allow "
+        fmt::format("arcs: expected at most {} faces, got about {:.0f}. Use a larger tolerance, or allow "
                     "more faces",
                     most, count));
 }
