@@ -341,7 +341,8 @@ class ObjDeriver {
       return run.before.faces <= derived_->parent(face);
     });
     // Behind a run its state is that of the next one.
-    return derived_->is_shell() ? with_flat_rim(next->state) : next->state;
+    const StateLines& state = next == found_.runs.end() ? found_.state_at_end : next->state;
+    return derived_->is_shell() ? with_flat_rim(state) : state;
   }
   /// What ends the source's last line.
   std::string end_of_text() const { return text_.ends_with('\n') ? "" : std::string(line_end_); }
