@@ -106,7 +106,7 @@ std::string certified_in_words(const CertifiedFaces& certified, const Lengths& l
 
 void add_certified(const CertifiedFaces& certified, std::size_t faces, Remarks& remarks) {
   if (certified.source_faces > 0)
-    remarks.add(Gravity::Detail, fmt::format("{} faces were split into {}", certified.source_faces, faces));
+    remarks.add(Gravity::Detail, fmt::format("{} faces became {}", certified.source_faces, faces));
   if (certified.certified < certified.there)
     remarks.add(
         certified.certified < kAsGoodAsAll * certified.there ? Gravity::Off : Gravity::Detail,

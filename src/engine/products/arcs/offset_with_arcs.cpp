@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -145,8 +146,12 @@ class ArcRun {
     }
     for (std::size_t s = 0; s < kStageCount; ++s) result.statistics.seconds[s] += seconds_[s];
     const StageTimer timer(result.statistics.seconds, Stage::Measure);
-    // What is said of the mesh is said of the one that was given.
-    result.statistics.facts = prepared_.statistics().facts;
+    // What is said of the mesh is said of the one that was given, but for the numbers of vertices and faces.
+    MeshFacts& facts = result.statistics.facts;
+    std::map<std::size_t, std::size_t> faces = std::move(facts.faces_by_corners);
+    facts = prepared_.statistics().facts;
+    facts.vertices = count;
+    facts.faces_by_corners = std::move(faces);
     CertifiedFaces certified = certify({prepared_.query(), prepared_.surface(), made_.triangles, source, positions,
                                         asked, tolerance, result.states, Corners::Round, true});
     certified.share = tolerance_.share;
