@@ -210,15 +210,15 @@ std::optional<io::InTriangles> find_in_offset(const io::MeshFile& source_file, c
 }
 
 [[noreturn]] void refuse_other_faces(const Request& made, PolygonView source, PolygonView offset) {
-  throw InvalidInput(
-      fmt::format("{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}{}", made.output, made.input,
-                  source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
-                  source.positions.size() == offset.positions.size() && source.face_count() == offset.face_count()
-                      ? " with other corners"
-                      : "",
-                  source.face_count() < offset.face_count()
-                      ? " (if that was made with --tolerance, its source is the file of --refined-source)"
-                      : ""));
+  throw InvalidInput(fmt::format(
+      "{}: expected the vertices and faces of {} ({} and {}), found {} and {}{}{}", made.output, made.input,
+      source.positions.size(), source.face_count(), offset.positions.size(), offset.face_count(),
+      source.positions.size() == offset.positions.size() && source.face_count() == offset.face_count()
+          ? " with other corners"
+          : "",
+      source.face_count() < offset.face_count()
+          ? " (if that was made with --tolerance or --corners arc, its source is the file of --refined-source)"
+          : ""));
 }
 
 /// \throw InvalidInput unless both have the same points. A curve that is closed in one of them may be open in the

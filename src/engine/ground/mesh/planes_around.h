@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,13 +26,13 @@ struct PlanesAround {
   std::vector<double> areas, tilts;
 };
 
-/// The planes around a vertex of a Surface or Polyline, each once: with the normal of the largest of the faces on it,
+/// The planes of some faces of a Surface or Polyline, each once: with the normal of the largest of the faces on it,
 /// which is best. normal_of(face) and tilt_of(face), the sine of the angle by which that may be wrong, are called of
 /// faces that have an area; those that may be tilted by more than kMostTilt are left out.
 template <class Shape, class NormalOf, class TiltOf>
-PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of, TiltOf&& tilt_of) {
+PlanesAround planes_of(const Shape& shape, std::span<const std::uint32_t> of, NormalOf&& normal_of, TiltOf&& tilt_of) {
   std::vector<std::pair<double, std::uint32_t>> faces;
-  for (const auto t : shape.triangles_around(vertex))
+  for (const auto t : of)
     if (shape.triangle_normals[t].lengthSqr() > 0) faces.emplace_back(-shape.extent(t), t);
   std::sort(faces.begin(), faces.end());
   PlanesAround planes;
@@ -50,6 +51,11 @@ PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& 
     planes.tilts.push_back(tilt);
   }
   return planes;
+}
+/// Those around a vertex.
+template <class Shape, class NormalOf, class TiltOf>
+PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of, TiltOf&& tilt_of) {
+  return planes_of(shape, shape.triangles_around(vertex), normal_of, tilt_of);
 }
 template <class Shape, class NormalOf>
 PlanesAround planes_around(const Shape& shape, std::uint32_t vertex, NormalOf&& normal_of) {

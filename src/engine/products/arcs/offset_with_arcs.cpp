@@ -67,7 +67,6 @@ class ArcRun {
         prepared_(space_, options_, threads, farthest_of({&options_.distance, 1}), {.by_corner = true}) {}
 
   RefinedOffset run() {
-    if (!goes_anywhere(farthest_of({&options_.distance, 1}))) return unmoved();
     const AskedDistances asked = ask(prepared_, {&options_.distance, 1});
     std::vector<PreparedMesh::Marched> marched = prepared_.march(asked.moved, ridges_of(options_));
     prepared_.field() = {};
@@ -86,17 +85,6 @@ class ArcRun {
  private:
   double share() const {
     return tolerance_.share > 0 ? tolerance_.share : tolerance_.length / options_.distance.scale();
-  }
-
-  /// The mesh as it is, where no vertex moves.
-  RefinedOffset unmoved() const {
-    RefinedOffset result;
-    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) result.refinement.parent.push_back(f);
-    result.refinement.polygons = {{mesh_.positions.begin(), mesh_.positions.end()},
-                                  {mesh_.corners.begin(), mesh_.corners.end()},
-                                  {mesh_.face_begin.begin(), mesh_.face_begin.end()}};
-    result.result = offset(mesh_, options_);
-    return result;
   }
 
   /// The opened mesh where it stands off the source, on the way to its targets.
@@ -130,7 +118,7 @@ class ArcRun {
     }
   }
 
-  /// Tells what is proven of the result, against the mesh.
+  /// Reports what is proven of the result, against the mesh.
   void certify_faces(const Distances& distances, RefinedOffset& made) {
     OffsetResult& result = made.result;
     const std::size_t count = made_.vertex.size();
@@ -240,11 +228,8 @@ Indices ArcRun::OffSource::tangled() const {
 }  // namespace
 
 RefinedOffset offset_with_arcs(PolygonView mesh, const OffsetOptions& options, const Tolerance& tolerance) {
-  OffsetOptions of_arcs = with_call_progress(options);
-  of_arcs.corners = Corners::Miter;
-  of_arcs.exact = nullptr;
-  vdb_offset::require_usable(mesh, {&of_arcs.distance, 1}, of_arcs);
-  return in_arena(options.threads, [&](int threads) { return ArcRun(mesh, of_arcs, tolerance, threads).run(); });
+  const OffsetOptions of_call = with_call_progress(options);
+  return in_arena(options.threads, [&](int threads) { return ArcRun(mesh, of_call, tolerance, threads).run(); });
 }
 
 }  // namespace vdb_offset

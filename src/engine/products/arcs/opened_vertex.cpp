@@ -28,23 +28,16 @@ constexpr double kLeastRise = 0.2;
 // faces beside it have an area. Not measured.
 constexpr double kBeyondTip = 0.1;
 
-/// The normals of the planes in a sector, on the side that the vertex goes to, each once: of the largest face on it.
-std::vector<Vec3d> planes_of(const Surface& surface, const RidgeFan& fan, std::uint32_t sector) {
-  std::vector<std::pair<double, std::uint32_t>> faces;
+/// The normals of the planes in a sector, on the side that the vertex goes to. Faces of any size count, as each needs
+/// its copies.
+std::vector<Vec3d> normals_in(const Surface& surface, const RidgeFan& fan, std::uint32_t sector) {
+  std::vector<std::uint32_t> faces;
   for (std::size_t i = 0; i < fan.triangles.size(); ++i)
-    if (const std::uint32_t t = fan.triangles[i];
-        fan.sector[i] == sector && surface.triangle_normals[t].lengthSqr() > 0)
-      faces.emplace_back(-surface.extent(t), t);
-  std::sort(faces.begin(), faces.end());
-  std::vector<Vec3d> normals;
-  for (const auto& [less, t] : faces) {
-    const Vec3d normal = surface.triangle_normals[t] * fan.side;
-    const double most = kOnePlaneSine + surface.tilt(t);
-    if (std::none_of(normals.begin(), normals.end(),
-                     [&](const Vec3d& plane) { return (plane - normal).lengthSqr() < most * most; }))
-      normals.push_back(normal);
-  }
-  return normals;
+    if (fan.sector[i] == sector) faces.push_back(fan.triangles[i]);
+  return planes_of(
+             surface, faces, [&](std::uint32_t t) { return surface.triangle_normals[t] * fan.side; },
+             [&](std::uint32_t t) { return std::min(surface.tilt(t), kMostTilt); })
+      .normals;
 }
 
 /// What is at a right angle to an axis, of unit length.
@@ -107,7 +100,7 @@ class ArcLayer {
     const std::uint32_t left = fan_.sector[fan_.next(ridge)], right = fan_.sector[ridge], flank = 3 - left - right;
     std::array<Vec3d, 3> normal;
     for (std::uint32_t s = 0; s < 3; ++s) {
-      const auto point = miter_point(planes_of(surface_, fan_, s));
+      const auto point = miter_point(normals_in(surface_, fan_, s));
       if (!point) return false;
       normal[s] = point->position.unit();
     }
@@ -196,7 +189,7 @@ double arc_step(double tolerance) { return kStepShare * 2 * std::acos(1 - tolera
 bool find_sectors(const Surface& surface, OpenedVertex& vertex) {
   vertex.points.clear();
   for (std::uint32_t s = 0; s < vertex.fan.sectors; ++s) {
-    const auto point = miter_point(planes_of(surface, vertex.fan, s));
+    const auto point = miter_point(normals_in(surface, vertex.fan, s));
     if (!point) return false;
     vertex.points.push_back(point->position);
   }

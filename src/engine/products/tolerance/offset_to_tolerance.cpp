@@ -60,6 +60,17 @@ void require_usable(const OffsetOptions& options, const Tolerance& tolerance) {
         "paths to be kept");
 }
 
+/// The mesh as it is, where no vertex moves.
+RefinedOffset unmoved(PolygonView mesh, const OffsetOptions& options) {
+  RefinedOffset result;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) result.refinement.parent.push_back(f);
+  result.refinement.polygons = {{mesh.positions.begin(), mesh.positions.end()},
+                                {mesh.corners.begin(), mesh.corners.end()},
+                                {mesh.face_begin.begin(), mesh.face_begin.end()}};
+  result.result = offset(mesh, options);
+  return result;
+}
+
 /// One call of offset_to_tolerance().
 class RefinedRun {
  public:
@@ -75,7 +86,6 @@ class RefinedRun {
 
   RefinedOffset run() {
     const AskedDistances asked = ask(prepared_, {&options_.distance, 1});
-    if (!goes_anywhere(farthest_of({&options_.distance, 1}))) return unmoved();
     const OffsetResult coarse =
         std::move(make_results(prepared_, asked, prepared_.march(asked.moved, ridges_of(options_))).front());
     prepared_.field() = {};
@@ -94,16 +104,6 @@ class RefinedRun {
   std::size_t mesh_triangles() const {
     return surface().triangles.size() -
            (prepared_.obstacles() ? prepared_.obstacles()->query.surface().triangles.size() : 0);
-  }
-
-  RefinedOffset unmoved() {
-    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) refined_.refinement.parent.push_back(f);
-    refined_.refinement.polygons = {{mesh_.positions.begin(), mesh_.positions.end()},
-                                    {mesh_.corners.begin(), mesh_.corners.end()},
-                                    {mesh_.face_begin.begin(), mesh_.face_begin.end()}};
-    options_.progress = progress_;
-    refined_.result = offset(mesh_, options_);
-    return std::move(refined_);
   }
 
   /// The displacement of a vertex of the surface; where it falls short, the direction that it would have gone in, as
@@ -364,8 +364,14 @@ std::size_t Tolerance::limit_of_faces(std::size_t mesh_faces) const {
   return most_faces > 0 ? most_faces : std::max(kFacesForEach * mesh_faces, kFacesInAnyCase);
 }
 
-RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options, const Tolerance& tolerance) {
-  if (options.corners != Corners::Arc) vdb_offset::require_usable(mesh, {&options.distance, 1}, options);
+RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& given, const Tolerance& tolerance) {
+  const bool has_arcs = given.corners == Corners::Arc;
+  OffsetOptions options = given;
+  if (has_arcs) {
+    options.corners = Corners::Miter;
+    options.exact = nullptr;
+  }
+  vdb_offset::require_usable(mesh, {&options.distance, 1}, options);
   require_usable(options, tolerance);
   std::vector<Vec3d> rounded;
   if (tolerance.precision.rounds_all) {
@@ -374,7 +380,8 @@ RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options
     for (Vec3d& position : rounded) position = precision(position);
     mesh.positions = rounded;
   }
-  if (options.corners == Corners::Arc) return offset_with_arcs(mesh, options, tolerance);
+  if (!goes_anywhere(farthest_of({&options.distance, 1}))) return unmoved(mesh, options);
+  if (has_arcs) return offset_with_arcs(mesh, options, tolerance);
   return in_arena(options.threads, [&](int threads) { return RefinedRun(mesh, options, tolerance, threads).run(); });
 }
 
