@@ -95,6 +95,9 @@ VDB_OFFSET_API void require_names(const WallNames& walls, std::size_t faces);
 /// would be "outer" or "sides", the later gets _2, _3 ... behind it.
 VDB_OFFSET_API std::vector<std::string> patch_names(const WallNames& walls);
 
+/// The names of a refinement's faces, as of an opened wall: those of the faces that they are pieces of, or lie beside.
+VDB_OFFSET_API WallNames names_of_pieces(WallNames walls, const Refinement& refinement);
+
 /// The quality of a volume mesh in OpenFOAM's terms.
 struct FoamQuality {
   static constexpr double kMostDegrees = 70, kMostSkewness = 4;  ///< checkMesh warns above these.
@@ -124,8 +127,10 @@ VDB_OFFSET_API const char* name(FaceRole role);
 
 /// What making cells found.
 struct LayerCellFacts {
-  std::vector<FaceRole> role;        ///< Of each face of the input.
-  std::vector<std::uint8_t> cells;   ///< Of each face of the input: the number of cells in each layer.
+  std::vector<FaceRole> role;       ///< Of each face of the input.
+  std::vector<std::uint8_t> cells;  ///< Of each face of the input: the number of cells in each layer.
+  /// The same in the first layer, where that differs from the others: over a wall with fans. Else empty.
+  std::vector<std::uint8_t> first_cells;
   std::size_t turned_faces = 0;      ///< Faces whose cells lie on the side opposite to the sign of the heights.
   std::size_t border_sides = 0;      ///< Sides of a layer's cells on edges of one face that carries cells.
   std::size_t unpaired_sides = 0;    ///< Sides of a layer's cells on other edges, without a cell of opposite direction.
@@ -135,10 +140,13 @@ struct LayerCellFacts {
 
 /// Measures of the cells over layers.
 struct LayerQuality {
-  std::vector<CellType> types;  ///< Of the cells of one layer: all layers have the same.
+  std::vector<CellType> types;  ///< Of the cells of the first layer.
+  /// Of the cells of any other layer, where these differ: over a wall with fans. Else empty, and all are as the first.
+  std::vector<CellType> upper_types;
   /// Of all cells, layer by layer (see cell_quality.h).
   std::vector<float> scaled_jacobian, aspect_ratio;
-  /// Degrees, of the cells of one layer: at the wall, in the column that the cell is in (see cell_quality.h).
+  /// Degrees, of the cells of the first layer: at the wall, in the column that the cell is in (see cell_quality.h). Not
+  /// a number over opened edges, where a column has no face on the wall.
   std::vector<float> wall_angle;
   double volume = 0;  ///< Of all cells, world units^3; of cells in a plane their area, world units^2.
   std::size_t points = 0;
@@ -212,6 +220,7 @@ struct LayerFigures {
   std::array<std::size_t, kFaceRoleCount> faces_by_role{};
   std::array<std::size_t, kCellTypeCount> cells_by_type{};
   std::size_t cells = 0, transition_cells = 0;
+  std::size_t fan_cells = 0;      ///< In fans over opened edges, whose faces count for nothing but cells.
   double area = 0;                ///< Of the faces that were asked to carry layers, world units^2.
   double layers_reached = 0;      ///< Number of layers times the share of heights kept, mean over that area.
   double coverage = 0;            ///< Share of that area whose faces have all of their heights at all of their corners.

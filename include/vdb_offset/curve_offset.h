@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,19 @@ VDB_OFFSET_API std::vector<OffsetResult> offset_curves(CurvesView curves, std::s
 /// \throw InvalidInput as grow_layers() and offset_curves().
 VDB_OFFSET_API LayersResult grow_curve_layers(CurvesView curves, std::span<const Distances> heights,
                                               const OffsetOptions& options);
+
+/// Layers on curves whose sharp corners are opened into fans.
+struct VDB_OFFSET_API FannedCurveLayers {
+  /// The curves with their opened corners, points of which stand off the source by 1e-9 of the thickness, so that
+  /// copies can be told apart: what cells are made on. Not set where no corner is opened.
+  std::optional<Curves> wall;
+  LayersResult layers;  ///< Of the wall's points, at their places in the source; without a wall, of the curves'.
+};
+
+/// grow_curve_layers() with fans of cells at sharp convex corners, as at a trailing edge: see grow_fanned_layers(). In
+/// the first layer of a fan there are triangles. \throw InvalidInput as both
+VDB_OFFSET_API FannedCurveLayers grow_fanned_curve_layers(CurvesView curves, std::span<const Distances> heights,
+                                                          const OffsetOptions& options, double angle);
 
 /// Plans what offset_curves() would do, or grow_curve_layers() if there are layers, without doing it. \throw as
 /// offset_curves()

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -62,6 +63,9 @@ class VDB_OFFSET_API SharedStacks {
   std::span<const Vec3d> of(std::size_t vertex) const { return stacks_.of(stack_[vertex]); }
   bool is_flat(std::size_t vertex) const { return stacks_.is_flat(stack_[vertex]); }
 
+  /// Puts the wall's end of all stacks, and flat ones as a whole, where the vertices are.
+  void put_on_wall(std::span<const Vec3d> positions);
+
   /// The positions of all vertices in one layer, 0 for the wall.
   std::vector<Vec3d> surface(std::size_t layer) const;
 
@@ -99,6 +103,9 @@ struct VDB_OFFSET_API LayersResult {
   SharedStacks stacks;  ///< Of the input's vertices: on the wall, which is the mesh itself, and at each height.
   /// Of each input vertex: the first vertex that it moves with; kNone if it is in no face. Empty on curves.
   std::vector<std::uint32_t> welded_to;
+  /// Over a wall whose sharp edges are opened (see grow_fanned_layers()), of each vertex: the first one on its point of
+  /// the wall. Empty: over each point there is one stack.
+  std::vector<std::uint32_t> foot;
   std::vector<Distances> heights;   ///< Asked of each input vertex, one set a layer; all of one sign.
   std::vector<double> share;        ///< Of each input vertex: the share of its heights that it keeps, 0 .. 1.
   std::vector<VertexState> states;  ///< Of the outermost surface's vertices.
@@ -128,5 +135,25 @@ struct VDB_OFFSET_API LayersResult {
 /// \throw InvalidInput as offset_several(), and for heights that do not rise, or are of both signs.
 VDB_OFFSET_API LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights,
                                         const OffsetOptions& options, CellRules rules = CellRules::AnySolver);
+
+/// Layers on a mesh whose sharp edges are opened into fans.
+struct VDB_OFFSET_API FannedLayers {
+  /// The mesh with its opened edges: its faces in their order, then the faces of fans (see Refinement::over_ridges),
+  /// which have no area. Not set where no edge is opened.
+  std::optional<Refinement> wall;
+  LayersResult layers;  ///< Of the wall's vertices and faces; without one, of the mesh's.
+};
+
+/// grow_layers() with fans of cells over sharp convex edges and corners, where one vertex alone would leave its
+/// neighbours far apart in the outer layers. Each vertex on such an edge gets copies that share its point of the wall,
+/// each with layers of its own; between the copies lie prisms along the edge in the first layer, tetrahedra over
+/// corners, and hexahedra and prisms above. Where an edge is no longer sharp its fan ends in a point, beside two cells
+/// that are parted into pyramids and tetrahedra. A vertex without room for a fan has none.
+/// \param angle edges that bend by more than this are opened, and neighbours in a fan are no farther apart; degrees, 0
+/// or 5 .. 180. 0: none is opened.
+/// \throw InvalidInput as grow_layers(), and for another angle
+VDB_OFFSET_API FannedLayers grow_fanned_layers(PolygonView mesh, std::span<const Distances> heights,
+                                               const OffsetOptions& options, double angle,
+                                               CellRules rules = CellRules::AnySolver);
 
 }  // namespace vdb_offset

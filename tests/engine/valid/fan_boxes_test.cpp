@@ -44,7 +44,7 @@ Polygons book() {
 }
 
 /// A cone over a flat fan that it goes through at some places.
-Polygons cone(double dent) {
+Polygons cone_of(double dent) {
   Polygons mesh;
   mesh.positions = {{0, 0, 1}, {0, 0, 0}};
   for (int i = 0; i < kAround; ++i) {
@@ -76,7 +76,7 @@ std::vector<TrianglePair> brute(const Surface& surface, const std::vector<Vec3d>
 }  // namespace
 
 TEST_CASE("fans: triangles around one vertex or edge meet those that all pairs say", "[crossings][fans]") {
-  const std::vector<Polygons> meshes = {bush(), book(), cone(0.01), cone(0)};
+  const std::vector<Polygons> meshes = {bush(), book(), cone_of(0.01), cone_of(0)};
   const std::vector<bool> any = {true, true, true, false};
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const Surface surface = build_surface(meshes[i].view(), {});

@@ -36,6 +36,28 @@ void Distances::extend(double distance) {
   inward_ = std::max(inward_, -distance);
 }
 
+void require_fan_angle(double angle) {
+  // Neighbours in a fan that are closer make cells that are longer than any solver likes. Not measured.
+  constexpr double kLeast = 5, kMost = 180;
+  if (!(angle == 0 || (angle >= kLeast && angle <= kMost)))
+    throw InvalidInput("fan angle: expected 0 or 5 .. 180 degrees, got " + std::to_string(angle));
+}
+
+std::vector<Distances> copied_to(std::span<const Distances> distances, std::span<const std::uint32_t> origin) {
+  std::vector<Distances> copied;
+  for (const Distances& of_source : distances) {
+    if (of_source.uniform()) {
+      copied.push_back(of_source);
+      continue;
+    }
+    std::vector<double> each;
+    each.reserve(origin.size());
+    for (const std::uint32_t v : origin) each.push_back(of_source[v]);
+    copied.emplace_back(std::move(each));
+  }
+  return copied;
+}
+
 void require_heights(std::span<const Distances> heights, std::size_t vertices) {
   if (heights.empty()) throw InvalidInput("layers: expected a height, got none");
   for (const Distances& each : heights) {

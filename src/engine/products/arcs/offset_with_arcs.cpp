@@ -8,52 +8,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <optional>
+#include <memory>
 #include <utility>
 
 #include "ground/mesh/count_states.h"
-#include "ground/mesh/point_triangle.h"
-#include "ground/numbers/index_set.h"
 #include "ground/system/call_progress.h"
 #include "ground/system/stage_timer.h"
+#include "products/arcs/opened_mesh.h"
 #include "products/arcs/opened_source.h"
 #include "products/offset/field_stage.h"
 #include "products/offset/make_results.h"
 #include "products/offset/prepared_mesh.h"
-#include "products/offset/stand_off.h"
-#include "valid/faults/triangle_crossings.h"
 #include "valid/proof/certified_faces.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset {
 namespace {
-
-using Triangle = std::array<Vec3d, 3>;
-
-/// Adds the point in which a side of one triangle goes through another.
-void add_piercing(const Triangle& one, const Triangle& other, Vec3d& sum, int& count) {
-  const Vec3d normal = (other[1] - other[0]).cross(other[2] - other[0]);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3d &a = one[k], &b = one[(k + 1) % 3];
-    const double from = normal.dot(a - other[0]), to = normal.dot(b - other[0]);
-    if (from * to > 0 || from == to) continue;
-    const Vec3d x = a + (b - a) * (from / (from - to));
-    if (closest_on_triangle(x, other[0], other[1], other[2]).squared_distance > 1e-12 * normal.length()) continue;
-    sum += x;
-    ++count;
-  }
-}
-/// About where two triangles meet.
-Vec3d meeting_point(const Triangle& s, const Triangle& t) {
-  Vec3d sum(0.0);
-  int count = 0;
-  add_piercing(s, t, sum, count);
-  add_piercing(t, s, sum, count);
-  if (count > 0) return sum / count;
-  return (s[0] + s[1] + s[2] + t[0] + t[1] + t[2]) / 6.0;
-}
 
 /// One call of offset_with_arcs().
 class ArcRun {
@@ -70,13 +41,16 @@ class ArcRun {
     const AskedDistances asked = ask(prepared_, {&options_.distance, 1});
     std::vector<PreparedMesh::Marched> marched = prepared_.march(asked.moved, ridges_of(options_));
     prepared_.field() = {};
-    opened_.emplace(prepared_, asked.moved.front(), marched.front().paths, share(), options_.miter_limit,
-                    tolerance_.limit_of_faces(mesh_.face_count()));
-    made_ = opened_->faces();
+    Opening opening = opening_within(share());
+    opening.longest = options_.miter_limit;
+    opening.most_faces = tolerance_.limit_of_faces(mesh_.face_count());
+    OpenedSource opened(prepared_, asked.moved.front(), marched.front().paths, opening);
+    const std::unique_ptr<OpenedMesh> mesh = open_without_tangles(
+        prepared_, opened, {&options_.distance, 1}, {.has_targets = true, .by_corner = true}, threads_, made_);
     seconds_ = prepared_.statistics().seconds;
     RefinedOffset result;
-    result.result =
-        opened_->empty() ? std::move(make_results(prepared_, asked, std::move(marched)).front()) : offset_opened();
+    if (mesh) result.result = offset(*mesh);
+    else result.result = std::move(make_results(prepared_, asked, std::move(marched)).front());
     result.refinement = std::move(made_.refinement);
     certify_faces(asked.moved.front(), result);
     return result;
@@ -87,35 +61,11 @@ class ArcRun {
     return tolerance_.share > 0 ? tolerance_.share : tolerance_.length / options_.distance.scale();
   }
 
-  /// The opened mesh where it stands off the source, on the way to its targets.
-  class OffSource {
-   public:
-    OffSource(const ArcRun& run, OpenedSource::Faces& faces);
-    /// Vertices of the surface, sorted, whose faces meet here: their strips are in each other's way at any distance.
-    Indices tangled() const;
-    OffsetResult offset() { return std::move(make_results(*prepared_, *asked_, std::move(marched_)).front()); }
-
-   private:
-    void add_common(std::uint32_t s, std::uint32_t t, Indices& vertices) const;
-
-    const OpenedSource::Faces& faces_;
-    Polygons polygons_;
-    OffsetOptions options_;
-    std::optional<InMetric> space_;
-    std::optional<PreparedMesh> prepared_;
-    std::optional<AskedDistances> asked_;
-    std::vector<PreparedMesh::Marched> marched_;
-  };
-
-  /// Offsets the opened mesh, with ridges left closed where their strips would be in each other's way.
-  OffsetResult offset_opened() {
-    for (int closings = 0;; ++closings) {
-      OffSource off(*this, made_);
-      const Indices tangled = closings < kMostClosings ? off.tangled() : Indices{};
-      if (tangled.empty()) return off.offset();
-      opened_->close(tangled);
-      made_ = opened_->faces();
-    }
+  static OffsetResult offset(OpenedMesh& mesh) {
+    const AskedDistances asked = ask(mesh.prepared(), mesh.distances());
+    std::vector<PreparedMesh::Marched> marched;
+    marched.push_back(mesh.prepared().marched_to(asked.moved.front(), mesh.targets()));
+    return std::move(make_results(mesh.prepared(), asked, std::move(marched)).front());
   }
 
   /// Reports what is proven of the result, against the mesh.
@@ -152,78 +102,15 @@ class ArcRun {
     report_share(options_.progress, Stage::Measure, 1);
   }
 
-  // Rounds in which ridges are closed again. Not measured: one is nearly always enough.
-  static constexpr int kMostClosings = 4;
-
   PolygonView mesh_;
   OffsetOptions options_;
   const Tolerance& tolerance_;
   int threads_;
   InMetric space_;
   PreparedMesh prepared_;
-  std::optional<OpenedSource> opened_;
   OpenedSource::Faces made_;
   std::array<double, kStageCount> seconds_{};
 };
-
-ArcRun::OffSource::OffSource(const ArcRun& run, OpenedSource::Faces& faces)
-    : faces_(faces), polygons_(faces.refinement.polygons), options_(run.options_) {
-  const Surface& surface = run.prepared_.surface();
-  VertexTargets targets = faces.targets;
-  for (std::size_t v = 0; v < polygons_.positions.size(); ++v) {
-    const std::uint32_t w = faces.vertex[v];
-    if (w == kNone) continue;
-    const Vec3d source = run.mesh_.positions[surface.representative[w]];
-    polygons_.positions[v] = stand_off(source, targets.displacement[v]);
-    targets.displacement[v] = (source + targets.displacement[v]) - polygons_.positions[v];
-  }
-  options_.weld = {};  // by position alone: copies stand close to each other
-  if (!options_.only.empty()) {
-    options_.only.clear();
-    for (const std::uint32_t f : faces.refinement.parent) options_.only.push_back(run.options_.only[f]);
-  }
-  if (!options_.distance.uniform()) {
-    std::vector<double> each(run.mesh_.positions.size());
-    for (std::size_t v = 0; v < each.size(); ++v) each[v] = run.options_.distance[v];
-    for (const VertexOrigin& origin : faces.refinement.added) each.push_back(run.options_.distance[origin.vertex[0]]);
-    options_.distance = Distances(std::move(each));
-  }
-  space_.emplace(polygons_.view(), options_.metric);
-  prepared_.emplace(*space_, options_, run.threads_, farthest_of({&options_.distance, 1}),
-                    Yield{.has_targets = true, .by_corner = true});
-  asked_ = ask(*prepared_, {&options_.distance, 1});
-  marched_.push_back(prepared_->marched_to(asked_->moved.front(), targets));
-}
-
-/// Adds the opened vertex that two triangles are both at, and meet beside.
-void ArcRun::OffSource::add_common(std::uint32_t s, std::uint32_t t, Indices& vertices) const {
-  const Surface& surface = prepared_->surface();
-  const std::span<const Vec3d> positions = prepared_->source();
-  const auto at = [&](std::uint32_t triangle) {
-    const auto& [a, b, c] = surface.triangles[triangle];
-    return std::array{positions[a], positions[b], positions[c]};
-  };
-  const Vec3d meeting = meeting_point(at(s), at(t));
-  double nearest = std::numeric_limits<double>::infinity();
-  std::uint32_t vertex = kNone;
-  for (const std::uint32_t a : surface.triangles[s])
-    for (const std::uint32_t b : surface.triangles[t]) {
-      const std::uint32_t v = surface.representative[a], w = surface.representative[b];
-      if (v == kNone || w == kNone || faces_.vertex[v] != faces_.vertex[w]) continue;
-      if (!faces_.is_opened[v] && !faces_.is_opened[w]) continue;
-      const double distance = (positions[a] - meeting).lengthSqr();
-      if (distance < nearest) nearest = distance, vertex = faces_.vertex[v];
-    }
-  if (vertex != kNone) vertices.push_back(vertex);
-}
-
-Indices ArcRun::OffSource::tangled() const {
-  Indices vertices;
-  for (const auto& [s, t] : CrossingFinder(prepared_->surface(), prepared_->source()).listed().pairs)
-    add_common(s, t, vertices);
-  sort_unique(vertices);
-  return vertices;
-}
 
 }  // namespace
 

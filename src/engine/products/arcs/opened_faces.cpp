@@ -30,8 +30,9 @@ class OpenedFaceMaker {
     for (std::uint32_t v = 0; v < count; ++v) {
       const std::uint32_t w = surface_.welded[v];
       if (w == kNone || source.number_[w] != kNone) continue;
-      made_.targets.displacement[v] = source.plain_.displacement[w];
-      made_.targets.state[v] = source.plain_.state[w];
+      const bool straight = !source.goes_straight_.empty() && source.goes_straight_[w];
+      made_.targets.displacement[v] = straight ? source.straight_[w] : source.plain_.displacement[w];
+      made_.targets.state[v] = straight ? VertexState::Reached : source.plain_.state[w];
     }
   }
 
@@ -172,7 +173,8 @@ class OpenedFaceMaker {
   void add_strip(const std::vector<std::uint32_t>& near, const std::vector<std::uint32_t>& far, std::uint32_t f,
                  std::uint32_t across) {
     const std::size_t n = near.size() - 1, m = far.size() - 1;
-    const bool as_quads = n == m && mesh_.face(f).size() > 3 && mesh_.face(surface_.face[across]).size() > 3;
+    const bool as_quads = n == m && (source_.opening_.quads ||
+                                     (mesh_.face(f).size() > 3 && mesh_.face(surface_.face[across]).size() > 3));
     for (std::size_t i = 0, k = 0; i < n || k < m;) {
       if (as_quads) {
         add({near[i], far[i], far[i + 1], near[i + 1]}, f, across);

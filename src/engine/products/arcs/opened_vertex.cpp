@@ -17,10 +17,6 @@ namespace {
 // The most angle between the directions of two neighbouring sectors: beyond, no direction lies between them. Not
 // measured.
 constexpr double kMostArc = 2.9;
-// Share of the widest step of an arc that is taken, for patches to be within the tolerance as well. Measured: see
-// docs/dev/tuning.md.
-constexpr double kStepShare = 0.92;
-
 // The least slope of a ridge over the plane of the flank on which it ends: below, the arc is as long as the flank. Not
 // measured.
 constexpr double kLeastRise = 0.2;
@@ -49,15 +45,23 @@ class ArcLayer {
       : surface_(surface), finder_(finder), steps_(steps), step_(step), made_(vertex), fan_(vertex.fan) {}
 
   bool lay() {
-    if (fan_.sectors < 2) return lay_end();
-    for (const Vec3d& point : made_.points) made_.directions.push_back(point.unit());
+    if (fan_.sectors < 2) return !fan_.is_at_border && lay_end();
+    for (const Vec3d& point : made_.points)
+      if (!add(point)) return false;
     made_.arc.assign(fan_.triangles.size(), {});
     for (std::size_t i = 0; i < fan_.triangles.size(); ++i)
       if (fan_.is_open[i] && !lay_arc(i)) return false;
-    return fan_.sectors == 2 || lay_patch();
+    return fan_.sectors == 2 || fan_.is_at_border || lay_patch();
   }
 
  private:
+  /// Adds a direction, which lies along the border if the vertex is on one. False if it leads nowhere there.
+  bool add(const Vec3d& way) {
+    Vec3d direction = fan_.is_at_border ? surface_.along_border(fan_.vertex, way) : way;
+    if (!direction.normalize()) return false;
+    made_.directions.push_back(direction);
+    return true;
+  }
   Vec3d axis_of(std::size_t edge) const {
     return (surface_.vertices[fan_.across[edge]] - surface_.vertices[fan_.vertex]).unit();
   }
@@ -67,7 +71,7 @@ class ArcLayer {
   bool lay_arc(std::size_t edge) {
     const std::uint32_t from = fan_.sector[edge], to = fan_.sector[fan_.next(edge)];
     std::vector<std::uint32_t>& arc = made_.arc[edge];
-    for (std::size_t i = 0; i < edge && fan_.sectors == 2; ++i)
+    for (std::size_t i = 0; i < edge && fan_.sectors == 2 && !fan_.is_at_border; ++i)
       if (fan_.is_open[i]) {
         arc.assign(made_.arc[i].rbegin(), made_.arc[i].rend());
         return true;
@@ -83,8 +87,7 @@ class ArcLayer {
       const double share = static_cast<double>(i) / static_cast<double>(count);
       arc.push_back(static_cast<std::uint32_t>(made_.directions.size()));
       // As seen along the edge, directions turn by the same angle each time.
-      made_.directions.push_back(
-          (a * (std::sin((1 - share) * angle) / reach_a) + b * (std::sin(share * angle) / reach_b)).unit());
+      if (!add(a * (std::sin((1 - share) * angle) / reach_a) + b * (std::sin(share * angle) / reach_b))) return false;
     }
     arc.push_back(to);
     return true;
@@ -183,8 +186,6 @@ class ArcLayer {
 };
 
 }  // namespace
-
-double arc_step(double tolerance) { return kStepShare * 2 * std::acos(1 - tolerance); }
 
 bool find_sectors(const Surface& surface, OpenedVertex& vertex) {
   vertex.points.clear();

@@ -14,10 +14,6 @@
 
 namespace vdb_offset {
 
-/// The step of an arc, an angle, with which its chords and the triangles of patches are within a tolerance, which is a
-/// share of the radius.
-double arc_step(double tolerance);
-
 /// A vertex that is opened: its copies, and the faces between them. Copies are numbered from 0, those of sectors first.
 struct OpenedVertex {
   RidgeFan fan;

@@ -10,6 +10,13 @@ void RidgeFan::part() {
   const std::size_t count = triangles.size();
   sector.assign(count, 0);
   sectors = 0;
+  if (is_at_border) {
+    for (std::size_t i = 0; i < count; ++i) {
+      sector[i] = sectors;
+      sectors += is_open[i] != 0 || i + 1 == count ? 1 : 0;
+    }
+    return;
+  }
   const auto open = std::find(is_open.begin(), is_open.end(), 1);
   if (open == is_open.end()) {
     sectors = 1;
@@ -22,10 +29,11 @@ void RidgeFan::part() {
   }
 }
 
-RidgeFinder::RidgeFinder(const PreparedMesh& mesh, const Distances& distances, double tolerance)
+RidgeFinder::RidgeFinder(const PreparedMesh& mesh, const Distances& distances, double least_bend, bool at_borders)
     : mesh_(mesh),
       distances_(distances),
-      least_bend_(2 * std::acos(1 - tolerance)),
+      least_bend_(least_bend),
+      at_borders_(at_borders),
       is_left_out_(mesh.surface().vertices.size(), 0) {
   const Surface& surface = mesh.surface();
   std::vector<std::uint32_t> triangles(mesh.mesh().face_count(), 0);
@@ -50,14 +58,26 @@ bool RidgeFinder::walk_around(RidgeFan& fan) const {
   const Surface& surface = mesh_.surface();
   const MeshParts& parts = mesh_.parts();
   const auto around = surface.triangles_around(fan.vertex);
-  const std::uint32_t first = around.front();
+  const auto corner = [&](std::uint32_t t) {
+    const auto& corners = surface.triangles[t];
+    return corners[0] == fan.vertex ? 0u : corners[1] == fan.vertex ? 1u : 2u;
+  };
+  const auto is_border = [&](std::uint32_t half_edge) { return surface.next_around_edge[half_edge] == half_edge; };
+  const auto begins =
+      std::find_if(around.begin(), around.end(), [&](std::uint32_t t) { return is_border(3 * t + corner(t)); });
+  fan.is_at_border = begins != around.end();
+  if (fan.is_at_border && !at_borders_) return false;
+  const std::uint32_t first = fan.is_at_border ? *begins : around.front();
   std::uint32_t t = first;
   do {
     if (!parts.off_part.empty() && parts.off_part[t]) return false;
-    const auto& corners = surface.triangles[t];
-    const std::uint32_t k = corners[0] == fan.vertex ? 0 : corners[1] == fan.vertex ? 1 : 2;
-    const std::uint32_t incoming = 3 * t + (k + 2) % 3, twin = surface.next_around_edge[incoming];
-    if (twin == incoming || surface.next_around_edge[twin] != incoming || surface.from(twin) != fan.vertex ||
+    const std::uint32_t incoming = 3 * t + (corner(t) + 2) % 3, twin = surface.next_around_edge[incoming];
+    if (is_border(incoming)) {
+      fan.triangles.push_back(t);
+      fan.across.push_back(surface.from(incoming));
+      return is_corner_once(surface.face[t], fan.vertex) && fan.triangles.size() == around.size();
+    }
+    if (surface.next_around_edge[twin] != incoming || surface.from(twin) != fan.vertex ||
         surface.is_turned(t) != surface.is_turned(twin / 3) || !is_corner_once(surface.face[t], fan.vertex))
       return false;
     fan.triangles.push_back(t);
@@ -69,6 +89,7 @@ bool RidgeFinder::walk_around(RidgeFan& fan) const {
 
 double RidgeFinder::bend(const RidgeFan& fan, std::size_t edge) const {
   const Surface& surface = mesh_.surface();
+  if (fan.is_at_border && edge + 1 == fan.triangles.size()) return 0;
   const std::uint32_t s = fan.triangles[edge], t = fan.triangles[fan.next(edge)];
   const Vec3d &n = surface.triangle_normals[s], &m = surface.triangle_normals[t];
   if (surface.face[s] == surface.face[t] || n.lengthSqr() == 0 || m.lengthSqr() == 0) return 0;
@@ -81,11 +102,13 @@ double RidgeFinder::bend(const RidgeFan& fan, std::size_t edge) const {
 std::optional<RidgeFan> RidgeFinder::operator()(std::uint32_t vertex) const {
   const Surface& surface = mesh_.surface();
   const double distance = distances_[vertex];
-  if (is_left_out_[vertex] || surface.representative[vertex] == kNone || distance == 0 || surface.is_held(vertex) ||
+  if (is_left_out_[vertex] || surface.representative[vertex] == kNone || distance == 0 ||
       surface.triangles_around(vertex).empty())
     return std::nullopt;
   RidgeFan fan{vertex, distance < 0 ? -1 : 1, {}, {}, {}, {}, 0};
   if (!walk_around(fan)) return std::nullopt;
+  // What two planes hold has one way to go, and what a plane holds inside of the surface lies in it.
+  if (surface.is_held(vertex) && (!fan.is_at_border || surface.held[vertex] > 1)) return std::nullopt;
   for (std::size_t i = 0; i < fan.triangles.size(); ++i) fan.is_open.push_back(bend(fan, i) > least_bend_);
   fan.part();
   return fan;

@@ -20,21 +20,22 @@ struct RidgeFan {
   std::vector<std::uint8_t> is_open;     ///< Of each of these edges: it is a ridge, and is opened here.
   std::vector<std::uint32_t> sector;     ///< Of each triangle.
   std::uint32_t sectors = 0;
+  bool is_at_border = false;  ///< The first and the last triangle are on a border; else they are neighbours.
 
   std::size_t next(std::size_t i) const { return i + 1 < triangles.size() ? i + 1 : 0; }
   /// Numbers the sectors anew, from the edges that are open.
   void part();
 };
 
-/// Finds ridges: edges that are convex on the side to which they go, and bend by more than one vertex over them could
-/// serve within the tolerance.
+/// Finds ridges: edges that are convex on the side to which they go, and bend by more than a given angle.
 class RidgeFinder {
  public:
-  /// Keeps references. \param distances of all vertices \param tolerance a share of the distance
-  RidgeFinder(const PreparedMesh& mesh, const Distances& distances, double tolerance);
+  /// Keeps references. \param distances of all vertices \param least_bend above which an edge is a ridge, radians
+  /// \param at_borders whether vertices on borders can be opened
+  RidgeFinder(const PreparedMesh& mesh, const Distances& distances, double least_bend, bool at_borders);
 
   /// The fan of a vertex that can be opened, whose ridges are open; nothing if the vertex lies on the edge of what
-  /// moves or of the surface, if more than one fan meets there, or a face without an area.
+  /// moves, or where borders meet, if more than one fan meets there, or a face without an area.
   std::optional<RidgeFan> operator()(std::uint32_t vertex) const;
   /// The angle between the triangles at an edge of a fan; below 0 if the edge is concave, 0 inside of a face.
   double bend(const RidgeFan& fan, std::size_t edge) const;
@@ -48,6 +49,7 @@ class RidgeFinder {
   const PreparedMesh& mesh_;
   const Distances& distances_;
   double least_bend_;
+  bool at_borders_;
   std::vector<std::uint8_t> is_left_out_;  // of each vertex: a face there has not all of its triangles
 };
 

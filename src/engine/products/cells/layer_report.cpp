@@ -63,14 +63,15 @@ class FigureCollector {
  public:
   FigureCollector(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts,
                   const LayerQuality& quality)
-      : mesh_(mesh), layers_(layers), facts_(facts), quality_(quality), first_cell_(mesh.face_count() + 1, 0) {
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) first_cell_[f + 1] = first_cell_[f] + facts.cells[f];
+      : mesh_(mesh), layers_(layers), facts_(facts), quality_(quality), upper_(cells_before(facts.cells)) {
+    if (!facts.first_cells.empty()) first_ = cells_before(facts.first_cells);
   }
 
   LayerFigures figures(std::string name, std::span<const std::uint32_t> faces) const {
     LayerFigures figures;
     figures.name = std::move(name);
-    for (const auto f : faces) ++figures.faces_by_role[static_cast<std::size_t>(facts_.role[f])];
+    for (const auto f : faces)
+      if (!is_of_fan(f)) ++figures.faces_by_role[static_cast<std::size_t>(facts_.role[f])];
     if (layers_.count() == 0) return figures;
     // These fill in different figures, and each has a part that keeps one thread busy.
     tbb::parallel_invoke([&] { add_cells(faces, figures); }, [&] { add_thickness(faces, figures); },
@@ -79,6 +80,13 @@ class FigureCollector {
   }
 
  private:
+  bool is_of_fan(std::uint32_t f) const {
+    if (layers_.foot.empty()) return false;
+    const auto face = mesh_.face(f);
+    for (std::size_t k = 0; k < face.size(); ++k)
+      if (layers_.foot[face[k]] == layers_.foot[face[(k + 1) % face.size()]]) return true;
+    return false;
+  }
   bool full(std::uint32_t v) const { return layers_.share[v] == 1 && !falls_short(layers_.states[v]); }
 
   /// A face's area, and means over its corners.
@@ -184,32 +192,59 @@ class FigureCollector {
     return false;
   }
 
-  void add_cells(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
-    for (const auto f : faces) {
-      figures.needles += facts_.cells[f] > 0 && is_needle(mesh_.face(f));
-      for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c)
-        figures.cells_by_type[static_cast<std::size_t>(quality_.types[c])] += layers_.count();
-      if (facts_.role[f] == FaceRole::Transition) figures.transition_cells += layers_.count() * facts_.cells[f];
-    }
-    figures.cells = std::accumulate(figures.cells_by_type.begin(), figures.cells_by_type.end(), std::size_t{0});
-    const std::size_t in_layer = figures.cells / layers_.count();
-    if (in_layer == first_cell_.back()) {
-      add_quality(
-          in_layer, [](std::size_t i) { return i; }, figures);
-    } else {
-      std::vector<std::uint32_t> numbers;  // of these faces' cells
-      numbers.reserve(in_layer);
-      for (const auto f : faces)
-        for (std::size_t c = first_cell_[f]; c < first_cell_[f + 1]; ++c)
-          numbers.push_back(static_cast<std::uint32_t>(c));
-      add_quality(
-          in_layer, [&](std::size_t i) { return i / in_layer * first_cell_.back() + numbers[i % in_layer]; }, figures);
-    }
+  static std::vector<std::size_t> cells_before(const std::vector<std::uint8_t>& of_faces) {
+    std::vector<std::size_t> before(of_faces.size() + 1, 0);
+    for (std::size_t f = 0; f < of_faces.size(); ++f) before[f + 1] = before[f] + of_faces[f];
+    return before;
+  }
+  const std::vector<std::size_t>& before(std::size_t layer) const {
+    return layer == 0 && !first_.empty() ? first_ : upper_;
+  }
+  CellType type(std::size_t layer, std::size_t cell) const {
+    return layer == 0 || quality_.upper_types.empty() ? quality_.types[cell] : quality_.upper_types[cell];
   }
 
-  /// Adds the figures of quality, of so many cells in each layer. number(i) is that of the i-th of them in all layers.
+  void add_cells(std::span<const std::uint32_t> faces, LayerFigures& figures) const {
+    const auto add = [&](std::uint32_t f, std::size_t layer, std::size_t layers) {
+      const std::vector<std::size_t>& cells = before(layer);
+      for (std::size_t c = cells[f]; c < cells[f + 1]; ++c)
+        figures.cells_by_type[static_cast<std::size_t>(type(layer, c))] += layers;
+      const std::size_t count = layers * (cells[f + 1] - cells[f]);
+      if (facts_.role[f] == FaceRole::Transition) figures.transition_cells += count;
+      if (is_of_fan(f)) figures.fan_cells += count;
+    };
+    for (const auto f : faces) {
+      figures.needles += facts_.cells[f] > 0 && is_needle(mesh_.face(f));
+      add(f, 0, 1);
+      add(f, 1, layers_.count() - 1);
+    }
+    figures.cells = std::accumulate(figures.cells_by_type.begin(), figures.cells_by_type.end(), std::size_t{0});
+    if (figures.cells == quality_.scaled_jacobian.size()) {
+      add_quality([](std::size_t i) { return i; }, before(0).back(), figures);
+      return;
+    }
+    std::vector<std::uint32_t> numbers;  // of these faces' cells, in the first layer and then in any other
+    numbers.reserve(figures.cells / layers_.count());
+    std::size_t in_first = 0;
+    for (const std::size_t layer : {0, 1}) {
+      for (const auto f : faces)
+        for (std::size_t c = before(layer)[f]; c < before(layer)[f + 1]; ++c)
+          numbers.push_back(static_cast<std::uint32_t>(c));
+      if (layer == 0) in_first = numbers.size();
+    }
+    const std::size_t in_upper = numbers.size() - in_first;
+    const auto number = [&](std::size_t i) -> std::size_t {
+      if (i < in_first) return numbers[i];
+      i -= in_first;
+      return before(0).back() + i / in_upper * upper_.back() + numbers[in_first + i % in_upper];
+    };
+    add_quality(number, in_first, figures);
+  }
+
+  /// Adds the figures of quality, of figures.cells cells. number(i) is that of the i-th of them in all layers, of which
+  /// so many are in the first one.
   template <class Number>
-  void add_quality(std::size_t in_layer, Number&& number, LayerFigures& figures) const {
+  void add_quality(Number&& number, std::size_t in_first, LayerFigures& figures) const {
     const auto count = [&](std::size_t cells, auto&& counts) {
       return tbb::parallel_reduce(
           tbb::blocked_range<std::size_t>(0, cells, 65536), std::size_t{0},
@@ -226,14 +261,22 @@ class FigureCollector {
     figures.scaled_jacobian =
         spread_of(figures.cells, [&](std::size_t i) { return quality_.scaled_jacobian[number(i)]; });
     figures.aspect_ratio = spread_of(figures.cells, [&](std::size_t i) { return quality_.aspect_ratio[number(i)]; });
-    figures.wall_angle = spread_of(in_layer, [&](std::size_t i) { return quality_.wall_angle[number(i)]; });
+    if (layers_.foot.empty()) {
+      figures.wall_angle = spread_of(in_first, [&](std::size_t i) { return quality_.wall_angle[number(i)]; });
+      return;
+    }
+    std::vector<float> at_wall;  // cells over opened edges have no face on it
+    for (std::size_t i = 0; i < in_first; ++i)
+      if (const float angle = quality_.wall_angle[number(i)]; angle >= 0) at_wall.push_back(angle);
+    figures.wall_angle = spread_of(at_wall.size(), [&](std::size_t i) { return at_wall[i]; });
   }
 
   PolygonView mesh_;
   const LayersResult& layers_;
   const LayerCellFacts& facts_;
   const LayerQuality& quality_;
-  std::vector<std::size_t> first_cell_;  // of each face, in a layer
+  std::vector<std::size_t> first_,
+      upper_;  // cells before each face, in the first layer if it differs, and in any other
 };
 
 std::string cells_by_type(const LayerFigures& figures) {
@@ -289,6 +332,7 @@ std::string summary(const LayerReport& report) {
   const LayerFigures& all = report.all;
   std::string text = fmt::format("{} layers: {}, {} points, {} {:.6g}\n", report.layers, cells_by_type(all),
                                  report.points, report.plane ? "area" : "volume", report.volume);
+  if (all.fan_cells > 0) text += fmt::format("{} of the cells in fans over sharp edges\n", all.fan_cells);
   text += fmt::format("thickness {:.4g} of {:.4g} (5 %: {:.4g}), {:.1f} layers, full on {:.1f} % of the {}\n",
                       all.reached.mean, all.asked.mean, all.reached.quantile_05, all.layers_reached, 100 * all.coverage,
                       report.plane ? "length" : "area");

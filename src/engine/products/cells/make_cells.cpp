@@ -56,36 +56,58 @@ void fill_points(const LayersResult& layers, const LayerCells& cells, VolumeMesh
     for (std::size_t i = 0; i < std::size(values); ++i)
       volume.point_fields[i].values[at] = static_cast<float>(values[i]);
   };
-  for_each_index((points.wall() + kBlock - 1) / kBlock,
+  for_each_index((points.stacks() + kBlock - 1) / kBlock,
                  [&](std::size_t b) {
                    const auto begin = static_cast<Index>(b * kBlock),
-                              end = std::min<Index>(points.wall(), begin + kBlock);
+                              end = std::min<Index>(points.stacks(), begin + kBlock);
                    for (std::size_t layer = 0; layer <= layers.count(); ++layer)
                      for (Index p = begin; p < end; ++p)
-                       if (layer == 0 || !points.flat(p)) fill(p, layer);
+                       if (layer == 0 ? p < points.wall() : !points.flat(p)) fill(p, layer);
                  },
                  1);
 }
 
-void fill_cells(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, std::size_t layers,
-                VolumeMesh& volume) {
-  const std::size_t cells = columns.cells.back();
-  const std::uint64_t size = columns.size.back();
+/// Fills in the points in the middle of cells beside fans, and their fields: the means of the cells' corners.
+void fill_middles(const LayerCells& cells, VolumeMesh& volume) {
+  const NumberedColumns& columns = cells.columns;
+  for (std::size_t c = 0; c < columns.middle.size(); ++c) {
+    const Index middle = columns.middle[c];
+    if (middle == kNone) continue;
+    std::vector<Index> corners;
+    const ColumnCells column = columns.column(cells.points, c, 0);
+    column.for_each_point([&](Index point) { corners.push_back(point); });
+    const auto mean = [&](auto&& values) {
+      auto sum = values[corners[0]];
+      for (std::size_t i = 1; i < corners.size(); ++i) sum += values[corners[i]];
+      return sum / static_cast<float>(corners.size());
+    };
+    volume.points[middle] = column.middle([&](Index point) -> const Vec3d& { return volume.points[point]; });
+    for (VolumeField& field : volume.point_fields) field.values[middle] = mean(field.values);
+    volume.point_fields[4].values[middle] = static_cast<float>(VertexState::Reached);
+  }
+}
+
+void fill_cells(const LayerCells& cells, const WallNames& names, VolumeMesh& volume) {
+  const NumberedColumns& columns = cells.columns;
+  const std::uint64_t upper = columns.upper.size.back();
+  const auto size_before = [&](std::size_t layer) {
+    return layer == 0 ? 0 : columns.in(0).size.back() + (layer - 1) * upper;
+  };
   volume.cell_fields = {{"layer", {}}, {"face", {}}, {"patch", {}}};
-  tbb::parallel_invoke([&] { volume.corners.resize(size * layers); },
+  tbb::parallel_invoke([&] { volume.corners.resize(size_before(cells.layers)); },
                        [&] {
-                         volume.cell_types.resize(cells * layers);
-                         volume.cell_begin.resize(cells * layers + 1);
-                         for (VolumeField& field : volume.cell_fields) field.values.resize(cells * layers);
+                         volume.cell_types.resize(cells.count());
+                         volume.cell_begin.resize(cells.count() + 1);
+                         for (VolumeField& field : volume.cell_fields) field.values.resize(cells.count());
                        });
-  for (std::size_t layer = 0; layer < layers; ++layer)
+  for (std::size_t layer = 0; layer < cells.layers; ++layer)
     for_each_index(columns.count(), [&](std::size_t c) {
-      std::size_t cell = layer * cells + columns.cells[c];
-      std::uint64_t at = layer * size + columns.size[c];
+      std::size_t cell = cells.cell(layer, c);
+      std::uint64_t at = size_before(layer) + columns.in(layer).size[c];
       const Index face = columns.face[c];
       const float values[] = {static_cast<float>(layer + 1), static_cast<float>(face),
                               names.of_face.empty() ? 0.0F : static_cast<float>(names.of_face[face])};
-      ColumnCells(points, columns.ring(c), layer)
+      columns.column(cells.points, c, layer)
           .visit_cells(
               [&](CellType type) {
                 for (std::size_t i = 0; i < std::size(values); ++i) volume.cell_fields[i].values[cell] = values[i];
@@ -94,7 +116,7 @@ void fill_cells(const LayerPoints& points, const NumberedColumns& columns, const
               },
               [&](Index corner) { volume.corners[at++] = corner; });
     });
-  volume.cell_begin.back() = size * layers;
+  volume.cell_begin.back() = size_before(cells.layers);
 }
 
 void add_face(std::span<const Index> face, std::size_t cell, BoundaryPatch& patch) {
@@ -103,29 +125,31 @@ void add_face(std::span<const Index> face, std::size_t cell, BoundaryPatch& patc
   patch.cell.push_back(static_cast<Index>(cell));
 }
 
-void add_walls(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, VolumeMesh& volume) {
+void add_walls(const LayerCells& cells, const WallNames& names, VolumeMesh& volume) {
   for (const std::string& name : patch_names(names)) volume.patches.emplace_back().name = name;
+  const NumberedColumns& columns = cells.columns;
   std::vector<Index> scratch;
   for (std::size_t c = 0; c < columns.count(); ++c) {
     BoundaryPatch& patch = volume.patches[names.of_face.empty() ? 0 : names.of_face[columns.face[c]]];
-    ColumnCells(points, columns.ring(c), 0).visit_below(scratch, [&](std::span<const Index> face, Index cell) {
-      add_face(face, columns.cells[c] + cell, patch);
+    columns.column(cells.points, c, 0).visit_below(scratch, [&](std::span<const Index> face, Index cell) {
+      add_face(face, cells.cell(0, c) + cell, patch);
     });
   }
 }
 
-void add_outer(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers, VolumeMesh& volume) {
+void add_outer(const LayerCells& cells, VolumeMesh& volume) {
+  const NumberedColumns& columns = cells.columns;
   BoundaryPatch& patch = volume.patches.emplace_back();
   patch.name = "outer";
   patch.kind = BoundaryPatch::Kind::Outer;
   patch.corners.reserve(columns.corners.size());
-  patch.face_begin.reserve(columns.cells.back() + 1);
-  patch.cell.reserve(columns.cells.back());
-  const std::size_t below = (layers - 1) * columns.cells.back();
+  patch.face_begin.reserve(columns.upper.cells.back() + 1);
+  patch.cell.reserve(columns.upper.cells.back());
+  const std::size_t last = cells.layers - 1;
   std::vector<Index> scratch;
   for (std::size_t c = 0; c < columns.count(); ++c)
-    ColumnCells(points, columns.ring(c), layers - 1).visit_above(scratch, [&](std::span<const Index> face, Index cell) {
-      add_face(face, below + columns.cells[c] + cell, patch);
+    columns.column(cells.points, c, last).visit_above(scratch, [&](std::span<const Index> face, Index cell) {
+      add_face(face, cells.cell(last, c) + cell, patch);
     });
 }
 
@@ -139,14 +163,14 @@ struct OpenSide {
 /// Finds the sides on the boundary, and the opening of the surface that each belongs to: sides with a common point
 /// belong to one. Openings are numbered in the order of columns. Returns their number.
 std::size_t find_openings(const LayerPoints& points, const NumberedColumns& columns, std::vector<OpenSide>& sides) {
-  DisjointSets joined(points.wall());
+  DisjointSets joined(points.stacks());
   for (std::size_t c = 0; c < columns.count(); ++c)
     for (Index k = 0; k < columns.ring(c).size(); ++k) {
       if (columns.open[columns.begin[c] + k] == 0) continue;
       sides.push_back({c, k});
       joined.join(columns.ring(c)[k], columns.ring(c)[(k + 1) % columns.ring(c).size()]);
     }
-  std::vector<Index> number(points.wall(), kNone);
+  std::vector<Index> number(points.stacks(), kNone);
   std::size_t count = 0;
   for (OpenSide& side : sides) {
     Index& opening = number[joined.first(columns.ring(side.column)[side.corner])];
@@ -179,9 +203,9 @@ std::string side_name(std::size_t openings, std::set<std::string>& taken) {
     if (std::string name = "sides_" + std::to_string(n); taken.insert(name).second) return name;
 }
 
-void add_sides(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers, VolumeMesh& volume) {
+void add_sides(const LayerCells& cells, VolumeMesh& volume) {
   std::vector<OpenSide> sides;
-  const std::size_t openings = keep_largest(find_openings(points, columns, sides), sides);
+  const std::size_t openings = keep_largest(find_openings(cells.points, cells.columns, sides), sides);
   std::set<std::string> taken;
   for (const BoundaryPatch& patch : volume.patches) taken.insert(patch.name);
   const std::size_t first = volume.patches.size();
@@ -190,21 +214,20 @@ void add_sides(const LayerPoints& points, const NumberedColumns& columns, std::s
     patch.name = side_name(openings, taken);
     patch.kind = BoundaryPatch::Kind::Side;
   }
-  for (std::size_t layer = 0; layer < layers; ++layer)
+  for (std::size_t layer = 0; layer < cells.layers; ++layer)
     for (const auto& [c, k, opening] : sides) {
-      const ColumnCells stack(points, columns.ring(c), layer);
+      const ColumnCells column = cells.columns.column(cells.points, c, layer);
       std::array<Index, 4> face;
-      const Index size = stack.side(k, face);
-      add_face(std::span(face).first(size), layer * columns.cells.back() + columns.cells[c] + stack.cell_at_side(k),
+      const Index size = column.side(k, face);
+      add_face(std::span(face).first(size), cells.cell(layer, c) + column.cell_at_side(k),
                volume.patches[first + opening]);
     }
 }
 
-void add_patches(const LayerPoints& points, const NumberedColumns& columns, const WallNames& names, std::size_t layers,
-                 VolumeMesh& volume) {
-  add_walls(points, columns, names, volume);
-  add_outer(points, columns, layers, volume);
-  add_sides(points, columns, layers, volume);
+void add_patches(const LayerCells& cells, const WallNames& names, VolumeMesh& volume) {
+  add_walls(cells, names, volume);
+  add_outer(cells, volume);
+  add_sides(cells, volume);
 }
 
 }  // namespace
@@ -216,10 +239,10 @@ VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const
   require_names(names, cells.facts.role.size());
   VolumeMesh volume;
   fill_points(layers, cells, volume);
-  tbb::parallel_invoke([&] { fill_cells(cells.points, cells.columns, names, layers.count(), volume); },
+  fill_middles(cells, volume);
+  tbb::parallel_invoke([&] { fill_cells(cells, names, volume); },
                        [&] {
-                         if (layers.count() > 0)
-                           add_patches(cells.points, cells.columns, names, layers.count(), volume);
+                         if (layers.count() > 0) add_patches(cells, names, volume);
                        });
   volume.cell_fields.push_back({"scaled_jacobian", std::move(quality.scaled_jacobian)});
   volume.cell_fields.push_back({"aspect_ratio", std::move(quality.aspect_ratio)});

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 
 #include "ground/system/assert.h"
@@ -30,8 +31,9 @@ class CellMeasurer {
   LayerQuality measure() {
     result_.points = cells_.point_count();
     if (cells_.count() == 0) return std::move(result_);
-    result_.types.resize(cells_.in_layer());
-    result_.wall_angle.resize(cells_.in_layer());
+    result_.types.resize(cells_.in_layer(0));
+    if (!cells_.columns.is_first_alike()) result_.upper_types.resize(cells_.columns.upper.cells.back());
+    result_.wall_angle.resize(cells_.in_layer(0));
     origin_ = stack(cells_.columns.corners[0])[0];
     std::vector<float>* const fields[] = {&result_.scaled_jacobian, &result_.aspect_ratio};
     for_each_index(
@@ -75,16 +77,15 @@ class CellMeasurer {
     return begin == end;
   }
 
-  void set(std::size_t layer, std::size_t cell, const CellQuality& quality) {
-    const std::size_t at = layer * cells_.in_layer() + cell;
-    result_.scaled_jacobian[at] = static_cast<float>(quality.jacobian);
-    result_.aspect_ratio[at] = static_cast<float>(quality.aspect);
+  void set(std::size_t cell, const CellQuality& quality) {
+    result_.scaled_jacobian[cell] = static_cast<float>(quality.jacobian);
+    result_.aspect_ratio[cell] = static_cast<float>(quality.aspect);
   }
 
   double measure_prisms(std::size_t begin) {
-    const std::size_t first = cells_.columns.cells[begin];
+    const std::size_t first = cells_.cell(0, begin);
     PrismQualityColumns columns{.layers = cells_.layers,
-                                .in_layer = cells_.in_layer(),
+                                .in_layer = cells_.in_layer(0),
                                 .scaled_jacobian = result_.scaled_jacobian.data() + first,
                                 .aspect_ratio = result_.aspect_ratio.data() + first,
                                 .wall_angle = result_.wall_angle.data() + first,
@@ -102,24 +103,52 @@ class CellMeasurer {
 
   double measure_column(std::size_t c, ColumnMesh& column) {
     const auto ring = cells_.columns.ring(c);
-    column.begin(ring, [&](Index k) { return cells_.points.flat(ring[k]); });
-    const std::size_t first = cells_.columns.cells[c];
-    std::copy(column.types().begin(), column.types().end(), result_.types.begin() + static_cast<std::ptrdiff_t>(first));
-    std::fill_n(result_.wall_angle.begin() + static_cast<std::ptrdiff_t>(first), column.types().size(),
-                angle_at_wall(ring));
+    const std::size_t corners = ring.size();
+    std::vector<Index> feet(corners);
+    ColumnMesh::Base base{ring};
+    if (is_over_ridge_or_beside(c)) {
+      for (std::size_t k = 0; k < corners; ++k) feet[k] = cells_.points.foot(ring[k]);
+      base.feet = feet;
+      if (!cells_.columns.splits.empty())
+        base.splits = std::span(cells_.columns.splits).subspan(cells_.columns.begin[c], corners);
+    }
+    column.begin(base, [&](Index k) { return cells_.points.flat(ring[k]); });
+    set_types(c, column);
     for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
       const VolumeMesh& mesh = column.at(layer, [&](Index k) { return stack(ring[k]); });
-      for (std::size_t i = 0; i < mesh.cell_count(); ++i) set(layer, first + i, cell_quality(mesh, i));
+      for (std::size_t i = 0; i < mesh.cell_count(); ++i) set(cells_.cell(layer, c) + i, cell_quality(mesh, i));
     }
     std::vector<Index> face;
     double six_volumes = six_volumes_at_sides(c);
-    const auto add = [&](std::span<const Index> corners, Index) { six_volumes += six_volumes_under(corners); };
-    ColumnCells(cells_.points, ring, 0).visit_below(face, add);
-    ColumnCells(cells_.points, ring, cells_.layers - 1).visit_above(face, add);
+    const auto add = [&](std::span<const Index> of, Index) { six_volumes += six_volumes_under(of); };
+    cells_.columns.column(cells_.points, c, 0).visit_below(face, add);
+    cells_.columns.column(cells_.points, c, cells_.layers - 1).visit_above(face, add);
     return six_volumes;
   }
 
+  /// Whether the first cell of a column may differ from the others: its corners share a point of the wall, or a side is
+  /// split.
+  bool is_over_ridge_or_beside(std::size_t c) const {
+    const auto ring = cells_.columns.ring(c);
+    if (cells_.columns.is_first_alike()) return false;
+    if (!cells_.columns.splits.empty()) return true;
+    return std::any_of(ring.begin(), ring.end(), [&](Index p) { return cells_.points.foot(p) != p; });
+  }
+  void set_types(std::size_t c, ColumnMesh& column) {
+    const auto copy = [](const std::vector<CellType>& from, std::vector<CellType>& to, std::size_t at) {
+      std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
+    };
+    copy(column.types(0), result_.types, cells_.cell(0, c));
+    if (!result_.upper_types.empty()) copy(column.types(1), result_.upper_types, cells_.columns.upper.cells[c]);
+    std::fill_n(result_.wall_angle.begin() + static_cast<std::ptrdiff_t>(cells_.cell(0, c)), column.types(0).size(),
+                angle_at_wall(cells_.columns.ring(c)));
+  }
+
+  /// Not a number where the column has no face on the wall.
   float angle_at_wall(std::span<const Index> ring) const {
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      if (cells_.points.foot(ring[k]) == cells_.points.foot(ring[(k + 1) % ring.size()]))
+        return std::numeric_limits<float>::quiet_NaN();
     std::vector<Vec3d> wall, first;
     for (const Index p : ring) wall.push_back(stack(p)[0]), first.push_back(stack(p)[1]);
     return static_cast<float>(wall_angle(wall, first));
@@ -132,7 +161,7 @@ class CellMeasurer {
       if (cells_.columns.open[cells_.columns.begin[c] + k] == 0) continue;
       for (std::size_t layer = 0; layer < cells_.layers; ++layer) {
         std::array<Index, 4> face;
-        const Index size = ColumnCells(cells_.points, ring, layer).side(k, face);
+        const Index size = cells_.columns.column(cells_.points, c, layer).side(k, face);
         if (size > 0) sum += six_volumes_under(std::span(face).first(size));
       }
     }
@@ -143,7 +172,7 @@ class CellMeasurer {
   }
   const Vec3d& position(Index point) const {
     const LayerPoints& points = cells_.points;
-    if (point < points.wall()) return stack(point)[0];
+    if (point < points.wall()) return stack(point)[0];  // the first stack on a point of the wall has its number
     const Index above = point - points.wall();
     return stack(points.rising[above % points.risen()])[above / points.risen() + 1];
   }

@@ -3,8 +3,9 @@
 // two where growing has split a quad; columns that repeat an earlier one, or have no height at any corner, go, and
 // those on the other side are turned round. The sides of columns at each edge are paired, forwards with backwards. A
 // side without a partner is on the boundary; where that is no border, the position is split, and fans that are joined
-// over paired sides keep one point each. Points of the wall come first, then those that rise, layer by layer. Counting
-// the cells of each column gives all their numbers. No position is changed here. Numbers follow the order of faces and
+// over paired sides keep one point each. Over opened edges several stacks share a point of the wall. Points of the wall
+// come first, then those that rise, layer by layer, then those in the middle of cells beside fans. Counting the cells
+// of each column gives all their numbers. No position is changed here. Numbers follow the order of faces and
 // vertices, and do not depend on the number of threads.
 #include "products/cells/number_cells.h"
 
@@ -19,12 +20,11 @@
 #include <string>
 #include <utility>
 
-#include "ground/mesh/edge_sides.h"
 #include "ground/mesh/repeated_faces.h"
-#include "ground/numbers/disjoint_sets.h"
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
-#include "products/layers/column_cells.h"
+#include "products/cells/side_match.h"
+#include "products/layers/fan_splits.h"
 #include "space/surface/weld.h"
 #include "vdb_offset/run.h"
 
@@ -33,12 +33,19 @@ namespace {
 
 using Index = std::uint32_t;
 
+/// The vertex that stands for one in columns: the first that it moves with; of flat ones the first on their point of
+/// the wall.
+Index stands_for(const LayersResult& layers, std::span<const std::uint8_t> flat, Index v) {
+  const Index first = layers.welded_to[v];
+  return !layers.foot.empty() && flat[first] != 0 ? layers.foot[first] : first;
+}
+
 /// The positions of a face's corners without those that repeat the one before. Returns false if they are no polygon.
-bool clean_ring(std::span<const Index> face, std::span<const Index> welded_to, std::vector<Index>& ring,
-                std::vector<Index>& sorted) {
+bool clean_ring(std::span<const Index> face, const LayersResult& layers, std::span<const std::uint8_t> flat,
+                std::vector<Index>& ring, std::vector<Index>& sorted) {
   ring.clear();
   for (const Index v : face)
-    if (ring.empty() || ring.back() != welded_to[v]) ring.push_back(welded_to[v]);
+    if (const Index w = stands_for(layers, flat, v); ring.empty() || ring.back() != w) ring.push_back(w);
   while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
   if (ring.size() <= 3) return ring.size() == 3;  // neighbours differ, and all three are neighbours
   sorted.assign(ring.begin(), ring.end());
@@ -46,13 +53,21 @@ bool clean_ring(std::span<const Index> face, std::span<const Index> welded_to, s
   return ring.size() > 2 && std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
 }
 
+/// Whether some corners of a column share a point of the wall.
+bool is_over_ridge(const LayersResult& layers, std::span<const Index> ring) {
+  if (layers.foot.empty()) return false;
+  Index last = layers.foot[ring.back()];
+  return std::any_of(ring.begin(), ring.end(), [&](Index v) { return std::exchange(last, layers.foot[v]) == last; });
+}
+
 /// The side of a face that its first layer lies on: above 0 if its normal points there. Farther layers may have turned
-/// their backs to the wall.
+/// their backs to the wall. Faces over ridges have no area there, and are seen in the first layer.
 double rises(const LayersResult& layers, std::span<const Index> ring) {
   const auto at = [&](Index v, std::size_t layer) -> const Vec3d& { return layers.stacks.of(v)[layer]; };
+  const std::size_t seen = is_over_ridge(layers, ring) ? 1 : 0;
   Vec3d normal(0.0), rise(0.0);
   for (std::size_t k = 2; k < ring.size(); ++k)
-    normal += (at(ring[k - 1], 0) - at(ring[0], 0)).cross(at(ring[k], 0) - at(ring[0], 0));
+    normal += (at(ring[k - 1], seen) - at(ring[0], seen)).cross(at(ring[k], seen) - at(ring[0], seen));
   for (const Index v : ring) rise += at(v, 1) - at(v, 0);
   return normal.dot(rise);
 }
@@ -63,7 +78,8 @@ Index split_from(const LayersResult& layers, std::size_t f, std::size_t corners)
 }
 
 /// Makes columns on the faces that are polygons, and notes down the roles of faces.
-NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, LayerCellFacts& facts) {
+NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
+                              LayerCellFacts& facts) {
   // Of each face the numbers of its columns and corners, then the sums of those before it.
   std::vector<Index> columns_before(mesh.face_count() + 1, 0), corners_before(mesh.face_count() + 1, 0);
   const auto visit_rings = [&](auto&& visit) {
@@ -71,7 +87,7 @@ NumberedColumns find_polygons(PolygonView mesh, const LayersResult& layers, Laye
       std::vector<Index> ring, sorted;
       for (std::size_t f = range.begin(); f != range.end(); ++f)
         if (layers.carries.empty() || layers.carries[f] != 0)
-          visit(f, ring, clean_ring(mesh.face(f), layers.welded_to, ring, sorted));
+          visit(f, ring, clean_ring(mesh.face(f), layers, flat, ring, sorted));
     });
   };
   visit_rings([&](std::size_t f, const std::vector<Index>& ring, bool is_polygon) {
@@ -171,124 +187,13 @@ bool keep_columns(const LayersResult& layers, std::span<const std::uint8_t> flat
   return none_turned;
 }
 
-/// Two sides of an edge with opposite directions, by the corners at which they start.
-struct SidePair {
-  Index forwards, backwards;
-};
-
-/// Calls pair(SidePair) for the sides of an edge, the first forwards with the first backwards and so on, and
-/// left(corner) for the sides that are left. `sides` are sorted by corner.
-template <class Pair, class Left>
-void pair_sides(std::span<const EdgeSide> sides, std::span<const Index> corners, Index smaller, Pair&& pair,
-                Left&& left) {
-  const auto seek = [&](std::size_t from, bool forwards) {
-    while (from < sides.size() && (corners[sides[from].corner] == smaller) != forwards) ++from;
-    return from;
-  };
-  std::size_t f = seek(0, true), b = seek(0, false);
-  for (; f < sides.size() && b < sides.size(); f = seek(f + 1, true), b = seek(b + 1, false))
-    pair(SidePair{sides[f].corner, sides[b].corner});
-  for (; f < sides.size(); f = seek(f + 1, true)) left(sides[f].corner);
-  for (; b < sides.size(); b = seek(b + 1, false)) left(sides[b].corner);
-}
-
-/// Finds the sides on the boundary, and the positions at which a side is left without a partner.
-class SideMatch {
- public:
-  SideMatch(std::size_t vertices, std::span<const std::uint8_t> flat, NumberedColumns& columns, LayerCellFacts& facts)
-      : columns_(columns),
-        flat_(flat),
-        edges_({{}, columns.corners, columns.begin}, numbers_below(vertices)),
-        crowded_(vertices, 0) {
-    std::atomic<std::size_t> border_sides = 0, unpaired_sides = 0;
-    for_each_index(edges_.positions(), [&](std::size_t v) {
-      visit_risen_from(v, [&](Index a, Index b, std::span<const EdgeSide> sides) {
-        pair_sides(
-            sides, columns_.corners, a, [](SidePair) {},
-            [&](Index corner) {
-              columns_.open[corner] = 1;
-              ++(sides.size() == 1 ? border_sides : unpaired_sides);
-              if (sides.size() == 1) return;
-              for (const Index end : {a, b}) std::atomic_ref(crowded_[end]).store(1, std::memory_order_relaxed);
-            });
-      });
-    });
-    facts.border_sides = border_sides;
-    facts.unpaired_sides = unpaired_sides;
-    has_unpaired_ = unpaired_sides > 0;
-  }
-  /// Whether any side that is no border is left without a partner.
-  bool has_unpaired() const { return has_unpaired_; }
-  bool crowded(Index vertex) const { return crowded_[vertex] != 0; }
-
-  /// Joins corners that share a point of the wall, where a position has several points: over paired sides.
-  DisjointSets join_fans() const {
-    DisjointSets sets(columns_.corners.size());
-    for_edges([&](Index a, Index b, std::span<const EdgeSide> sides) {
-      if (!crowded(a) && !crowded(b)) return;
-      pair_sides(
-          sides, columns_.corners, a,
-          [&](SidePair pair) {
-            sets.join(pair.forwards, next(pair.backwards));
-            sets.join(next(pair.forwards), pair.backwards);
-          },
-          [](Index) {});
-    });
-    return sets;
-  }
-
-  /// Counts the unpaired sides that have the points of other sides. \pre no unpaired side is a border
-  std::size_t count_coincident(DisjointSets& sets) const {
-    std::size_t count = 0;
-    for_edges([&](Index a, Index, std::span<const EdgeSide> sides) {
-      const auto ends = [&](Index corner) {
-        std::pair at(sets.first(corner), sets.first(next(corner)));
-        return columns_.corners[corner] == a ? at : std::pair(at.second, at.first);
-      };
-      for (const EdgeSide& side : sides)
-        if (columns_.open[side.corner] != 0 && sides.size() > 1)
-          count += std::count_if(sides.begin(), sides.end(),
-                                 [&](const EdgeSide& other) { return ends(other.corner) == ends(side.corner); }) > 1;
-    });
-    return count;
-  }
-
- private:
-  static std::vector<Index> numbers_below(std::size_t count) {
-    std::vector<Index> numbers(count);
-    for_each_index(count, [&](std::size_t i) { numbers[i] = static_cast<Index>(i); });
-    return numbers;
-  }
-  template <class Visit>
-  void visit_risen_from(std::size_t vertex, Visit&& visit) const {
-    edges_.visit_from(vertex, [&](Index smaller, std::span<const EdgeSide> sides) {
-      const Index larger = sides[0].larger_end;
-      if (flat_[smaller] == 0 || flat_[larger] == 0) visit(smaller, larger, sides);
-    });
-  }
-  template <class Visit>
-  void for_edges(Visit&& visit) const {
-    for (std::size_t v = 0; v < edges_.positions(); ++v) visit_risen_from(v, visit);
-  }
-  Index next(Index corner) const {
-    const auto column = std::upper_bound(columns_.begin.begin(), columns_.begin.end(), corner) - 1;
-    return columns_.next(static_cast<std::size_t>(column - columns_.begin.begin()), corner);
-  }
-
-  NumberedColumns& columns_;
-  std::span<const std::uint8_t> flat_;
-  EdgeSides edges_;
-  std::vector<std::uint8_t> crowded_;  // of each vertex: 1 if a side there is left without a partner
-  bool has_unpaired_ = false;
-};
-
 /// Makes the columns of faces over which layers rise, on the side where they do, with the first vertex at each corner's
 /// position, and notes down the roles of all faces.
 /// \param flat of each vertex: 1 if it rises in no layer
 /// \param all_paired becomes true if each side that rises is known to have one partner; sides of flat faces do not rise
 NumberedColumns find_columns(PolygonView mesh, const LayersResult& layers, std::span<const std::uint8_t> flat,
                              LayerCellFacts& facts, bool& all_paired) {
-  NumberedColumns columns = find_polygons(mesh, layers, facts);
+  NumberedColumns columns = find_polygons(mesh, layers, flat, facts);
   const bool none_turned = keep_columns(layers, flat, columns, facts);
   all_paired = none_turned && layers.known.paired &&
                std::none_of(facts.role.begin(), facts.role.end(),
@@ -296,10 +201,32 @@ NumberedColumns find_columns(PolygonView mesh, const LayersResult& layers, std::
   return columns;
 }
 
-/// Numbers the points, of which sides without a partner get some of their own, makes the corners of columns points of
-/// the wall instead of vertices, and marks the open sides of columns.
-LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, NumberedColumns& columns,
-                          LayerCellFacts& facts) {
+/// Puts the stacks first that have a point of the wall of their own, and notes down which ones the others share.
+void share_points(std::span<const Index> foot, NumberedColumns& columns, LayerPoints& points) {
+  std::vector<Index> first(foot.size(), kNone), shares(points.stacks(), kNone), order, number(points.stacks());
+  for (Index p = 0; p < points.stacks(); ++p) {
+    Index& of_foot = first[foot[points.vertex[p]]];
+    // A vertex that several fans of columns meet at is not opened: each has a point of its own.
+    if (of_foot == kNone || points.vertex[of_foot] == points.vertex[p]) of_foot = p;
+    else shares[p] = of_foot;
+  }
+  for (const bool own : {true, false})
+    for (Index p = 0; p < points.stacks(); ++p)
+      if ((shares[p] == kNone) == own) number[p] = static_cast<Index>(order.size()), order.push_back(p);
+  std::vector<Index> vertex;
+  vertex.reserve(order.size());
+  for (const Index p : order) {
+    vertex.push_back(points.vertex[p]);
+    if (shares[p] != kNone) points.shared.push_back(number[shares[p]]);
+  }
+  points.vertex = std::move(vertex);
+  for (Index& corner : columns.corners) corner = number[corner];
+}
+
+/// Numbers the points, of which sides without a partner get some of their own, makes the corners of columns stacks
+/// instead of vertices, and marks the open sides of columns.
+LayerPoints number_points(std::span<const std::uint8_t> flat, std::span<const Index> foot, bool all_paired,
+                          NumberedColumns& columns, LayerCellFacts& facts) {
   columns.open.assign(columns.corners.size(), 0);
   std::optional<SideMatch> sides;
   if (!all_paired) sides.emplace(flat.size(), flat, columns, facts);
@@ -310,7 +237,7 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, N
   });
   for (std::size_t v = 0; v < flat.size(); ++v)
     if (of_vertex[v] != kNone) {
-      of_vertex[v] = points.wall();
+      of_vertex[v] = points.stacks();
       points.vertex.push_back(static_cast<Index>(v));
     }
   std::vector<Index> point(columns.corners.size());
@@ -325,7 +252,7 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, N
       if (first != c) {
         point[c] = point[first];
       } else if (taken[vertex] != 0) {
-        point[c] = points.wall();
+        point[c] = points.stacks();
         points.vertex.push_back(vertex);
         ++facts.split_points;
       }
@@ -333,8 +260,9 @@ LayerPoints number_points(std::span<const std::uint8_t> flat, bool all_paired, N
     }
   }
   columns.corners = std::move(point);
-  points.in_layer.assign(points.wall(), kNone);
-  for (Index p = 0; p < points.wall(); ++p)
+  if (!foot.empty()) share_points(foot, columns, points);
+  points.in_layer.assign(points.stacks(), kNone);
+  for (Index p = 0; p < points.stacks(); ++p)
     if (flat[points.vertex[p]] == 0) {
       points.in_layer[p] = points.risen();
       points.rising.push_back(p);
@@ -351,26 +279,49 @@ std::vector<std::uint8_t> find_flat(const SharedStacks& stacks) {
   return flat;
 }
 
-/// Counts the cells of each column, and their corners, and so numbers them.
-void count_cells(const LayerPoints& points, NumberedColumns& columns, LayerCellFacts& facts) {
-  columns.cells.assign(columns.count() + 1, 0);
-  columns.size.assign(columns.count() + 1, 0);
+/// Counts the cells of each column in a layer, and their corners, and so numbers them.
+CellNumbers count_cells(const LayerPoints& points, const NumberedColumns& columns, std::size_t layer) {
+  CellNumbers numbers;
+  numbers.cells.assign(columns.count() + 1, 0);
+  numbers.size.assign(columns.count() + 1, 0);
   for_each_index(columns.count(), [&](std::size_t c) {
-    ColumnCells(points, columns.ring(c), 0)
-        .visit_cells([&](CellType) { ++columns.cells[c + 1]; }, [&](Index) { ++columns.size[c + 1]; });
+    columns.column(points, c, layer)
+        .visit_cells([&](CellType) { ++numbers.cells[c + 1]; }, [&](Index) { ++numbers.size[c + 1]; });
   });
-  for (std::size_t c = 0; c < columns.count(); ++c)
-    facts.cells[columns.face[c]] = static_cast<std::uint8_t>(facts.cells[columns.face[c]] + columns.cells[c + 1]);
-  std::partial_sum(columns.cells.begin(), columns.cells.end(), columns.cells.begin());
-  std::partial_sum(columns.size.begin(), columns.size.end(), columns.size.begin());
+  std::partial_sum(numbers.cells.begin(), numbers.cells.end(), numbers.cells.begin());
+  std::partial_sum(numbers.size.begin(), numbers.size.end(), numbers.size.begin());
+  return numbers;
 }
 
-void require_countable(const LayerPoints& points, const NumberedColumns& columns, std::size_t layers) {
-  const std::uint64_t all_points = points.wall() + std::uint64_t{points.risen()} * layers;
-  const std::uint64_t all_cells = std::uint64_t{columns.cells.back()} * layers;
-  if (all_points >= kNone || all_cells >= kNone)
-    throw InvalidInput("layer_cells: expected fewer than 2^32 points and cells, got " + std::to_string(all_points) +
-                       " and " + std::to_string(all_cells) + " (ask for fewer layers)");
+std::vector<std::uint8_t> cells_of_faces(const NumberedColumns& columns, const CellNumbers& numbers,
+                                         std::size_t faces) {
+  std::vector<std::uint8_t> cells(faces, 0);
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    cells[columns.face[c]] =
+        static_cast<std::uint8_t>(cells[columns.face[c]] + numbers.cells[c + 1] - numbers.cells[c]);
+  return cells;
+}
+
+/// Finds the columns whose first cell has a point in its middle, beside fans that end.
+void find_middles(LayerCells& cells) {
+  NumberedColumns& columns = cells.columns;
+  columns.splits = find_splits(
+      columns.corners, columns.begin, [&](Index stack) { return cells.points.foot(stack); },
+      [&](Index stack) { return cells.points.flat(stack); });
+  if (columns.splits.empty()) return;
+  columns.middle.assign(columns.count(), kNone);
+  for (std::size_t c = 0; c < columns.count(); ++c)
+    if (columns.column(cells.points, c, 0).has_middle())
+      columns.middle[c] = static_cast<Index>(cells.risen_points() + cells.middles++);
+}
+
+void require_countable(const LayerCells& cells) {
+  const auto countable = [](std::uint64_t points, std::uint64_t in_all) {
+    if (points >= kNone || in_all >= kNone)
+      throw InvalidInput("layer_cells: expected fewer than 2^32 points and cells, got " + std::to_string(points) +
+                         " and " + std::to_string(in_all) + " (ask for fewer layers)");
+  };
+  countable(cells.point_count(), cells.count());
 }
 
 }  // namespace
@@ -414,7 +365,8 @@ const char* name(FaceRole role) {
 
 bool LayerCells::is_of_prisms(std::size_t column) const {
   // A triangle's cells have six corners in all only if none of its corners is flat.
-  return columns.ring(column).size() == 3 && columns.size[column + 1] - columns.size[column] == 6;
+  return columns.is_first_alike() && columns.ring(column).size() == 3 &&
+         columns.upper.size[column + 1] - columns.upper.size[column] == 6;
 }
 
 LayerCells number_cells(PolygonView mesh, const LayersResult& layers) {
@@ -422,16 +374,22 @@ LayerCells number_cells(PolygonView mesh, const LayersResult& layers) {
   LayerCells cells;
   cells.layers = layers.count();
   cells.facts.role.assign(mesh.face_count(), FaceRole::Bare);
-  cells.facts.cells.assign(mesh.face_count(), 0);
   const std::vector<std::uint8_t> flat = find_flat(layers.stacks);
   bool all_paired = false;
   cells.columns = find_columns(mesh, layers, flat, cells.facts, all_paired);
-  cells.points = number_points(flat, all_paired, cells.columns, cells.facts);
+  cells.points = number_points(flat, layers.foot, all_paired, cells.columns, cells.facts);
   VDB_OFFSET_ASSERT(std::is_sorted(cells.columns.begin.begin(), cells.columns.begin.end()));
   VDB_OFFSET_ASSERT(std::all_of(cells.columns.corners.begin(), cells.columns.corners.end(),
-                                [&](Index p) { return p < cells.points.wall(); }));
-  count_cells(cells.points, cells.columns, cells.facts);
-  require_countable(cells.points, cells.columns, layers.count());
+                                [&](Index p) { return p < cells.points.stacks(); }));
+  NumberedColumns& columns = cells.columns;
+  if (!layers.foot.empty()) find_middles(cells);
+  columns.upper = count_cells(cells.points, columns, 1);
+  cells.facts.cells = cells_of_faces(columns, columns.upper, mesh.face_count());
+  if (!layers.foot.empty()) {
+    columns.first = count_cells(cells.points, columns, 0);
+    cells.facts.first_cells = cells_of_faces(columns, columns.first, mesh.face_count());
+  }
+  require_countable(cells);
   return cells;
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 
 #include "ground/system/assert.h"
@@ -53,7 +54,11 @@ class CurveCellMaker {
 
  private:
   bool is_flat(std::uint32_t p) const { return layers_.stacks.is_flat(p); }
-  std::uint32_t number(std::size_t layer, std::uint32_t p) const { return numbers_[is_flat(p) ? 0 : layer][p]; }
+  /// The point of the wall that a point shares with other copies of a corner.
+  std::uint32_t foot(std::uint32_t p) const { return layers_.foot.empty() ? p : layers_.foot[p]; }
+  std::uint32_t number(std::size_t layer, std::uint32_t p) const {
+    return layer == 0 || is_flat(p) ? numbers_[0][foot(p)] : numbers_[layer][p];
+  }
 
   void add_points() {
     VolumeMesh& mesh = result_.mesh;
@@ -61,7 +66,7 @@ class CurveCellMaker {
     numbers_.assign(layers_.count() + 1, std::vector<std::uint32_t>(chains_.welded_to.size(), kNone));
     for (std::size_t k = 0; k < numbers_.size(); ++k)
       for (std::uint32_t p = 0; p < chains_.welded_to.size(); ++p) {
-        if (chains_.welded_to[p] != p || (k > 0 && is_flat(p))) continue;
+        if (chains_.welded_to[p] != p || (k > 0 ? is_flat(p) : foot(p) != p)) continue;
         numbers_[k][p] = static_cast<std::uint32_t>(mesh.points.size());
         mesh.points.push_back(layers_.stacks.of(p)[k]);
         mesh.point_fields[0].values.push_back(static_cast<float>(k));
@@ -104,12 +109,13 @@ class CurveCellMaker {
       if (!inward_) std::swap(a, b);
       const auto cell = static_cast<std::uint32_t>(mesh.cell_count());
       std::vector<std::uint32_t> corners = {number(k - 1, a), number(k - 1, b), number(k, b), number(k, a)};
-      if (k == 1) add_edge(mesh.patches[0], corners[0], corners[1], cell);
+      const bool in_fan = corners[0] == corners[1];
+      if (k == 1 && !in_fan) add_edge(mesh.patches[0], corners[0], corners[1], cell);
       if (k == layers_.count()) add_edge(mesh.patches[1], corners[2], corners[3], cell);
       if (sides_of_[b] == 1 && !is_flat(b)) add_edge(mesh.patches[2], corners[1], corners[2], cell);
       if (sides_of_[a] == 1 && !is_flat(a)) add_edge(mesh.patches[2], corners[3], corners[0], cell);
       if (is_flat(a)) corners.pop_back();
-      else if (is_flat(b)) corners.erase(corners.begin() + 1);
+      else if (is_flat(b) || in_fan) corners.erase(corners.begin() + 1);
       mesh.cell_types.push_back(corners.size() == 4 ? CellType::Quadrilateral : CellType::Triangle);
       mesh.corners.insert(mesh.corners.end(), corners.begin(), corners.end());
       mesh.cell_begin.push_back(mesh.corners.size());
@@ -149,12 +155,18 @@ LayerQuality measure_curve_cells(const CurveCells& cells, const LayersResult& la
                        .points = cells.mesh.points.size(),
                        .plane = true};
   const std::size_t in_layer = cells.mesh.cell_count() / layers.count();
-  quality.types.assign(cells.mesh.cell_types.begin(),
-                       cells.mesh.cell_types.begin() + static_cast<std::ptrdiff_t>(in_layer));
+  const auto first = cells.mesh.cell_types.begin(), second = first + static_cast<std::ptrdiff_t>(in_layer);
+  quality.types.assign(first, second);
+  if (!layers.foot.empty() && layers.count() > 1)
+    quality.upper_types.assign(second, second + static_cast<std::ptrdiff_t>(in_layer));
   for (std::size_t s = 0; s < cells.segments.view().face_count(); ++s) {
     if (cells.facts.cells[s] == 0) continue;
     const auto segment = cells.segments.view().face(s);
     const auto a = layers.stacks.of(segment[0]), b = layers.stacks.of(segment[1]);
+    if (a[0] == b[0]) {  // of a fan
+      quality.wall_angle.push_back(std::numeric_limits<float>::quiet_NaN());
+      continue;
+    }
     quality.wall_angle.push_back(static_cast<float>(wall_angle(std::array{a[0], b[0]}, std::array{a[1], b[1]})));
     for (std::size_t k = 1; k < a.size(); ++k)
       quality.least_segment = std::min(quality.least_segment, (b[k] - a[k]).length() / (b[0] - a[0]).length());

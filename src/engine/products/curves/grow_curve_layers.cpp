@@ -6,8 +6,11 @@
 // found for the line's vertices is handed out to the points of the curves that stand there; a point on no curve stays
 // where it is in all layers. Cells are not made here (see curve_cells.cpp).
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "ground/distances/layer_heights.h"
 #include "ground/mesh/count_states.h"
@@ -15,9 +18,11 @@
 #include "ground/system/stage_timer.h"
 #include "products/curves/curve_layer_grower.h"
 #include "products/curves/curve_limit.h"
+#include "products/curves/fanned_curves.h"
 #include "products/curves/prepared_curves.h"
 #include "products/curves/segment_error.h"
 #include "products/offset/moved_input.h"
+#include "products/offset/stand_off.h"
 #include "vdb_offset/curve_offset.h"
 
 namespace vdb_offset {
@@ -72,7 +77,7 @@ FaceError measure_layer(const PreparedCurves& curves, const Distances& heights, 
                           states);
 }
 
-LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights) {
+LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights, Spacing spacing) {
   const OffsetOptions& options = curves.options();
   std::vector<Distances> asked;
   std::size_t most_disagreeing = 0;
@@ -93,7 +98,7 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
   const PlaneCurves plane{curves.query(), curves.source(), outer, options.precision, miters};
   {
     const StageTimer timer(statistics.seconds, Stage::Limit);
-    statistics.limit = limit_curves(plane, paths, options.progress, Spacing::Even);
+    statistics.limit = limit_curves(plane, paths, options.progress, spacing);
   }
   LayerStack stack;
   {
@@ -114,19 +119,57 @@ LayersResult grow_on(PreparedCurves& curves, std::span<const Distances> heights)
   return hand_over(curves, std::move(statistics), asked, paths, stack);
 }
 
+/// Puts the layers of opened curves where the source is.
+void put_on_source(CurvesView source, std::span<const Distances> heights, const FannedCurves& fanned,
+                   LayersResult& layers) {
+  std::vector<Vec3d> wall;
+  wall.reserve(fanned.origin.size());
+  for (const std::uint32_t p : fanned.origin) wall.push_back(source.positions[p]);
+  layers.stacks.put_on_wall(wall);
+  layers.foot = fanned.foot;
+  layers.heights = copied_to(heights, fanned.origin);
+  const Distances& outer = layers.heights.back();
+  for (std::size_t p = 0; p < layers.share.size(); ++p) {
+    if (layers.share[p] == 0) continue;
+    layers.achieved[p] += kStandOff * std::abs(outer[p]);
+    layers.first_achieved[p] += kStandOff * std::abs(outer[p]);
+  }
+}
+
 }  // namespace
 
 LayersResult grow_curve_layers(CurvesView curves, std::span<const Distances> heights, const OffsetOptions& options) {
+  return grow_fanned_curve_layers(curves, heights, options, 0).layers;
+}
+
+FannedCurveLayers grow_fanned_curve_layers(CurvesView curves, std::span<const Distances> heights,
+                                           const OffsetOptions& options, double angle) {
   require_one_for_each_point(curves, heights);
   require_heights(heights, curves.positions.size());
+  require_fan_angle(angle);
   const OffsetOptions of_stages = with_call_progress(options);
-  LayersResult result = in_arena(options.threads, [&](int threads) {
-    PreparedCurves prepared(
-        curves, of_stages,
-        plan_ribbon(curves, of_stages, threads, farthest_of(heights.last(1)), {.layers = heights.size()}));
-    return grow_on(prepared, heights);
+  const auto grow = [&](CurvesView of, std::span<const Distances> to, int threads, Spacing spacing) {
+    PreparedCurves prepared(of, of_stages,
+                            plan_ribbon(of, of_stages, threads, farthest_of(to.last(1)), {.layers = to.size()}));
+    return grow_on(prepared, to, spacing);
+  };
+  FannedCurveLayers result = in_arena(options.threads, [&](int threads) -> FannedCurveLayers {
+    FannedCurves fanned;
+    if (angle > 0) fanned = open_corners(curves, heights.back(), angle * std::numbers::pi / 180);
+    if (fanned.origin.empty()) return {{}, grow(curves, heights, threads, Spacing::Even)};
+    const std::vector<Distances> off_source = less_stand_off(copied_to(heights, fanned.origin));
+    LayersResult layers = grow(fanned.curves.view(), off_source, threads, Spacing::Graded);
+    put_on_source(curves, heights, fanned, layers);
+    const bool is_full =
+        std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) { return !falls_short(state); });
+    FannedCurveLayers opened{std::move(fanned.curves), std::move(layers)};
+    if (is_full) return opened;
+    // Fans may have less room than what they take the place of.
+    LayersResult plain = grow(curves, heights, threads, Spacing::Even);
+    if (plain.statistics.faces.mean < opened.layers.statistics.faces.mean) return {{}, std::move(plain)};
+    return opened;
   });
-  count_states(result.states, result.statistics);
+  count_states(result.layers.states, result.layers.statistics);
   report_share(of_stages.progress, Stage::Measure, 1);
   return result;
 }

@@ -76,15 +76,11 @@ class ChainOrder {
     sort_front();
     if (order_.empty() || (spacing_ == Spacing::AsItIs && std::is_sorted(order_.begin(), order_.end()))) return 0;
     space();
-    const std::vector<Block> blocks = pool();
+    find_goals(pool());
+    if (spacing_ == Spacing::Graded) grade();
     std::atomic<std::size_t> moved = 0;
     for_each_index(
-        blocks.size(),
-        [&](std::size_t b) {
-          const std::size_t end = b + 1 < blocks.size() ? blocks[b + 1].first : points_.size();
-          if (blocks[b].count > 1) moved += put(blocks[b], end);
-        },
-        16);
+        points_.size(), [&](std::size_t i) { moved += put(i); }, 64);
     return moved;
   }
 
@@ -207,17 +203,99 @@ class ChainOrder {
     return front_[k - 1] + (front_[k] - front_[k - 1]) * share;
   }
 
-  /// Puts the points of a block along the front. Returns the number of those for which there was a position.
-  std::size_t put(const Block& block, std::size_t end) {
-    std::size_t moved = 0;
-    for (std::size_t i = block.first; i < end; ++i) {
-      if (!arrived_[i].on_front) continue;
-      const auto to = position_on_front(curves_, front_at(block.mean() + spaced_[i]), points_[i]);
-      if (!to) continue;
-      displacement_[points_[i]] = *to - curves_.source[points_[i]];
-      ++moved;
+  /// Where points are to be along the front: those of blocks of several move.
+  void find_goals(const std::vector<Block>& blocks) {
+    goal_.resize(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) goal_[i] = arrived_[i].front;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const std::size_t end = b + 1 < blocks.size() ? blocks[b + 1].first : points_.size();
+      for (std::size_t i = blocks[b].first; i < end && blocks[b].count > 1; ++i)
+        goal_[i] = blocks[b].mean() + spaced_[i];
     }
-    return moved;
+  }
+
+  /// Spreads what is too far apart along the front over its neighbours (see Spacing::Graded).
+  void grade() {
+    constexpr double kMostRatio = 1.4;
+    if (!std::all_of(arrived_.begin(), arrived_.end(), [](const Arrived& each) { return each.on_front; })) return;
+    const std::size_t count = points_.size() - (chain_.closed ? 0 : 1);
+    if (chain_.closed) {
+      along_front_.push_back(along_front_.back() + (front_.front() - front_.back()).length());
+      front_.push_back(front_.front());
+    }
+    const auto next = [&](std::size_t i) { return i + 1 < points_.size() ? i + 1 : 0; };
+    std::vector<double> apart(count), on_source(count), most(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool wraps = i + 1 == points_.size();
+      apart[i] = goal_[next(i)] - goal_[i] + (wraps ? along_front_.back() : 0);
+      on_source[i] = (curves_.source[points_[next(i)]] - curves_.source[points_[i]]).length();
+      most[i] = std::max(apart[i], on_source[i]);
+    }
+    sweep(most, [](double here, double before) { return std::min(here, before * kMostRatio); });
+    std::vector<double> excess(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      excess[i] = std::max(0.0, apart[i] - std::max(most[i], on_source[i]));
+      apart[i] -= excess[i];
+    }
+    add_spread(excess, 1 / kMostRatio, apart);
+    // What moves least keeps its place.
+    const auto fixed = static_cast<std::size_t>(std::min_element(spread_.begin(), spread_.end()) - spread_.begin());
+    std::size_t i = fixed;
+    double at = goal_[fixed];
+    for (std::size_t turn = 0; turn < count && i < count; ++turn, i = next(i)) {
+      at += apart[i];
+      if (next(i) != fixed) goal_[next(i)] = at;
+    }
+    at = goal_[fixed];
+    for (std::size_t k = fixed; !chain_.closed && k-- > 0;) goal_[k] = at -= apart[k];
+  }
+
+  /// Calls value = of(value, the one before) for all values in their order, and in the order backwards; twice around
+  /// closed curves.
+  template <class Of>
+  void sweep(std::vector<double>& values, Of&& of) const {
+    const std::size_t count = values.size();
+    for (int turn = 0; turn < (chain_.closed ? 2 : 1); ++turn) {
+      for (std::size_t i = chain_.closed ? 0 : 1; i < count; ++i)
+        values[i] = of(values[i], values[i > 0 ? i - 1 : count - 1]);
+      for (std::size_t i = count - (chain_.closed ? 0 : 1); i-- > 0;)
+        values[i] = of(values[i], values[i + 1 < count ? i + 1 : 0]);
+    }
+  }
+  /// Adds each excess to its neighbours on both sides, each next one by `share` of the one before; what would go beyond
+  /// the ends of a curve stays this side.
+  void add_spread(const std::vector<double>& excess, double share, std::vector<double>& apart) {
+    constexpr double kLeast = 1e-6;  // of an excess; reasoned: a part of it that nobody sees
+    const auto count = static_cast<std::ptrdiff_t>(excess.size());
+    const auto reach = std::min(count - 1, static_cast<std::ptrdiff_t>(std::ceil(std::log(kLeast) / std::log(share))));
+    spread_.assign(excess.size(), 0);
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      if (excess[i] == 0) continue;
+      std::vector<std::pair<std::size_t, double>> parts;
+      double sum = 0;
+      for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
+        const std::ptrdiff_t to = i + k;
+        if (!chain_.closed && (to < 0 || to >= count)) continue;
+        parts.emplace_back(static_cast<std::size_t>((to + count) % count), std::pow(share, std::abs(k)));
+        sum += parts.back().second;
+      }
+      for (const auto& [to, part] : parts) spread_[to] += excess[i] * part / sum;
+    }
+    for (std::size_t i = 0; i < apart.size(); ++i) apart[i] += spread_[i];
+  }
+
+  /// Puts a point to its place along the front, if it is another one. Returns whether there was a position.
+  bool put(std::size_t i) {
+    if (!arrived_[i].on_front || goal_[i] == arrived_[i].front) return false;
+    const auto to = position_on_front(curves_, front_at(around_front(goal_[i])), points_[i]);
+    if (to) displacement_[points_[i]] = *to - curves_.source[points_[i]];
+    return to.has_value();
+  }
+  double around_front(double length) const {
+    if (!chain_.closed || spacing_ != Spacing::Graded) return length;
+    return length < 0                     ? length + along_front_.back()
+           : length > along_front_.back() ? length - along_front_.back()
+                                          : length;
   }
 
   /// Pools adjacent violators (see put_in_order()).
@@ -244,6 +322,8 @@ class ChainOrder {
   Indices points_;
   std::vector<double> along_;   // of each point: its length along the source
   std::vector<double> spaced_;  // of each point: its least length along the front from the first point
+  std::vector<double> goal_;    // of each point: where it is to be along the front
+  std::vector<double> spread_;  // of each two neighbours: what they take of others' excess
   std::vector<Arrived> arrived_;
   // The front: the numbers of the points that have arrived there, their positions, and the lengths along it.
   std::vector<std::uint32_t> order_;

@@ -13,8 +13,9 @@ namespace vdb_offset {
 // segments would run across what lies between. Not measured.
 inline constexpr double kFarthestSpread = 8;
 
-/// How near to each other points that are in order may be: as near as they are, or no nearer than points out of order.
-enum class Spacing { AsItIs, Even };
+/// How near to each other points that are in order may be: as near as they are; no nearer than points out of order; or
+/// that, and besides apart by no more than half as much again as their neighbours are.
+enum class Spacing { AsItIs, Even, Graded };
 
 /// The position at a point's distance straight over or under `x`, if it is on the side asked for and its distance from
 /// the point's source is no more than kFarthestSpread allows.
@@ -33,6 +34,9 @@ std::optional<Vec2d> position_on_front(const PlaneCurves& curves, Vec2d x, std::
 ///
 /// With Spacing::Even, points that are in order, but have crowded at a corner of the front, go apart by that share,
 /// too.
+///
+/// With Spacing::Graded, what two neighbours are farther apart than half as much again as others beside them are, or
+/// as they are on the source, is spread over those to both sides: each next one takes two thirds of the one before.
 ///
 /// Curves with points that stay, or with both signs of distance, are left alone. Returns the number of points that were
 /// moved. The result does not depend on the number of threads.

@@ -19,6 +19,7 @@
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
 #include "products/layers/column_mesh.h"
+#include "products/layers/fan_splits.h"
 #include "products/layers/rails.h"
 #include "products/volume/cell_quality.h"
 #include "products/volume/foam_measures.h"
@@ -138,6 +139,13 @@ std::array<bool, 2> are_upright(const std::array<std::span<const std::uint32_t>,
   return {upright[0] != 0, upright[1] != 0};
 }
 
+/// Makes the splits of a ring's sides those of the ring that runs the other way, from the same corner.
+void turn_round(std::vector<SideSplit>& splits) {
+  std::reverse(splits.begin(), splits.end());
+  for (SideSplit& split : splits)
+    if (split != SideSplit::None) split = split == SideSplit::UpToNext ? SideSplit::DownToNext : SideSplit::UpToNext;
+}
+
 /// Twice the area of triangle abc, as n sees it.
 double area_along(const Vec3d& n, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return (b - a).cross(c - a).dot(n);
@@ -168,13 +176,18 @@ std::optional<std::size_t> corner_to_split_at(const std::array<Vec3d, 4>& x) {
 }  // namespace
 
 GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
-                             CellRules rules)
+                             CellRules rules, std::span<const std::uint32_t> foot)
     : rules_(rules), first_vertex_(constrained.surface.vertices.size(), kNone) {
   VDB_OFFSET_ASSERT(source.size() == constrained.surface.vertices.size());
   VDB_OFFSET_ASSERT(constrained.surface.welded.size() == mesh.positions.size());
   for (auto v = static_cast<std::uint32_t>(constrained.surface.welded.size()); v-- > 0;)
     if (constrained.surface.welded[v] != kNone) first_vertex_[constrained.surface.welded[v]] = v;
-  if (take_all(mesh, constrained, source)) return;
+  if (!take_all(mesh, constrained, source)) take_some(mesh, constrained, source);
+  if (!foot.empty()) find_fans(foot);
+}
+
+/// Makes columns on the faces that carry some.
+void GrowthColumns::take_some(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source) {
   const Surface& surface = constrained.surface;
   constexpr std::uint8_t kWithoutArea = 1, kCarries = 2;
   std::vector<std::uint8_t> seen(mesh.face_count(), 0);
@@ -194,6 +207,24 @@ GrowthColumns::GrowthColumns(PolygonView mesh, const ConstrainedSurface& constra
   incident_.resize(corners_.size());
   for (std::uint32_t column = 0; column < size(); ++column)
     for (const auto v : base(column)) incident_[incident_begin_[v + 1]++] = column;
+}
+
+/// Finds the columns over opened edges and beside the ends of fans, whose first cells are of other types.
+void GrowthColumns::find_fans(std::span<const std::uint32_t> foot) {
+  foot_.assign(first_vertex_.size(), kNone);
+  for (std::size_t v = 0; v < foot_.size(); ++v)
+    if (first_vertex_[v] != kNone) foot_[v] = foot[first_vertex_[v]];
+  splits_ = find_splits(
+      corners_, begin_, [&](std::uint32_t v) { return foot_[v]; }, [](std::uint32_t) { return false; });
+  at_fan_.assign(size(), 0);
+  opened_.assign(foot_.size(), 0);
+  for (std::size_t c = 0; c < size(); ++c) {
+    const auto ring = base(c);
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      if (const std::uint32_t v = ring[k], w = ring[(k + 1) % ring.size()]; foot_[v] == foot_[w])
+        at_fan_[c] = opened_[v] = opened_[w] = 1;
+      else if (!splits_.empty() && splits_[begin_[c] + k] != SideSplit::None) at_fan_[c] = 1;
+  }
 }
 
 /// Takes the surface's triangles as the columns, if all faces of the mesh are triangles with an area: the usual case.
@@ -291,14 +322,30 @@ bool GrowthColumns::rises_everywhere(std::size_t column, const VertexStacks& sta
 /// Whether the column's cells will pass the quality measures that are reported for them.
 bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const {
   thread_local ColumnMesh cells;
-  thread_local std::vector<std::uint32_t> ring, numbers;
+  thread_local std::vector<std::uint32_t> ring, numbers, feet;
+  thread_local std::vector<SideSplit> splits;
   ring.assign(base(column).begin(), base(column).end());
   if (side < 0) std::reverse(ring.begin() + 1, ring.end());
   const auto flat = [&](std::uint32_t v) { return stacks.is_flat(v); };
-  if (std::all_of(ring.begin(), ring.end(), flat)) return true;  // there are none
+  if (is_at_fan(column)) {  // flat corners on one point of the wall are one
+    const auto are_one = [&](std::uint32_t v, std::uint32_t w) { return flat(v) && flat(w) && foot_[v] == foot_[w]; };
+    ring.erase(std::unique(ring.begin(), ring.end(), are_one), ring.end());
+    while (ring.size() > 1 && are_one(ring.front(), ring.back())) ring.pop_back();
+  }
+  if (ring.size() < 3 || std::all_of(ring.begin(), ring.end(), flat)) return true;  // there are none
   numbers.clear();
   for (const std::uint32_t v : ring) numbers.push_back(first_vertex_[v]);
-  cells.begin(numbers, [&](std::size_t k) { return flat(ring[k]); });
+  feet.clear(), splits.clear();
+  if (is_at_fan(column)) {
+    for (const std::uint32_t v : ring) feet.push_back(foot_[v]);
+    if (!splits_.empty() && ring.size() == base(column).size()) {
+      splits.assign(splits_.begin() + begin_[column], splits_.begin() + begin_[column + 1]);
+      if (side < 0) turn_round(splits);
+      for (std::size_t k = 0; k < ring.size(); ++k)  // no fan ends beside what is flat
+        if (flat(ring[k]) || flat(ring[(k + 1) % ring.size()])) splits[k] = SideSplit::None;
+    }
+  }
+  cells.begin({numbers, feet, splits}, [&](std::size_t k) { return flat(ring[k]); });
   for (std::size_t layer = 0; layer < stacks.layers(); ++layer) {
     const VolumeMesh& mesh = cells.at(layer, [&](std::size_t k) { return stacks.of(ring[k]); });
     for (std::size_t c = 0; c < mesh.cell_count(); ++c)
@@ -311,7 +358,7 @@ bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stac
 
 bool GrowthColumns::is_of_prisms(std::size_t column, const VertexStacks& stacks) const {
   const auto corners = base(column);
-  return corners.size() == 3 &&
+  return corners.size() == 3 && !is_at_fan(column) &&
          std::none_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return stacks.is_flat(v); });
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "motion/parts/constrained_surface.h"
+#include "products/layers/column_cells.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/polygons.h"
 
@@ -21,8 +22,9 @@ class GrowthColumns {
  public:
   /// \param mesh the one that the surface was built from
   /// \param source positions of the surface's vertices
+  /// \param foot of each of the mesh's vertices: see LayersResult. Empty: no edge is opened
   GrowthColumns(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source,
-                CellRules rules = CellRules::AnySolver);
+                CellRules rules = CellRules::AnySolver, std::span<const std::uint32_t> foot = {});
 
   std::size_t size() const { return begin_.size() - 1; }
   /// The vertices of a column's base, in a ring.
@@ -36,6 +38,8 @@ class GrowthColumns {
     std::uint32_t face, from;
   };
   std::span<const SplitQuad> split_quads() const { return split_quads_; }
+  /// Whether a vertex shares its point of the wall with others.
+  bool is_opened(std::uint32_t vertex) const { return !opened_.empty() && opened_[vertex] != 0; }
   /// The columns that a vertex is a corner of.
   std::span<const std::uint32_t> around(std::uint32_t vertex) const {
     return std::span(incident_).subspan(incident_begin_[vertex], incident_begin_[vertex + 1] - incident_begin_[vertex]);
@@ -59,12 +63,20 @@ class GrowthColumns {
   bool has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const;
   bool is_of_prisms(std::size_t column, const VertexStacks& stacks) const;
   bool take_all(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source);
+  void take_some(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source);
   void add(PolygonView mesh, const Surface& surface, std::uint32_t triangle, std::span<const Vec3d> source);
 
   std::vector<std::uint32_t> corners_, begin_{0}, without_area_;
   std::vector<std::uint32_t> incident_, incident_begin_;
   std::vector<SplitQuad> split_quads_;
+  void find_fans(std::span<const std::uint32_t> foot);
+  bool is_at_fan(std::size_t column) const { return !at_fan_.empty() && at_fan_[column] != 0; }
+
   CellRules rules_;
+  std::vector<std::uint32_t> foot_;   // of each of the surface's vertices, a vertex of the mesh; empty without fans
+  std::vector<std::uint8_t> opened_;  // of each of the surface's vertices; empty without fans
+  std::vector<SideSplit> splits_;     // of each of corners_; empty if no side is split
+  std::vector<std::uint8_t> at_fan_;  // of each column: corners share a point of the wall, or a side is split
   std::vector<std::uint32_t>
       first_vertex_;  // of each of the surface's vertices: the first of the mesh's at its position
 };

@@ -58,7 +58,7 @@ class SurfaceWall final : public LayerWall {
 
  private:
   bool moves(std::uint32_t v) const override { return constrained_.vertex_on_part(v) && heights_.back()[v] != 0; }
-  bool is_bound(std::uint32_t v) const override { return constrained_.is_bound(v); }
+  bool is_bound(std::uint32_t v) const override { return constrained_.is_bound(v) || columns_.is_opened(v); }
 
   bool sees_all_faces(std::uint32_t v, const Vec3d& displacement) const override {
     const double length = displacement.length();

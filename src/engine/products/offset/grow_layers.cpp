@@ -5,6 +5,8 @@
 // until cells and the outermost surface are valid. Layers are then rounded to what the file keeps, and distances and
 // errors are measured on that. Vertices that are welded share one stack, but for those that stand elsewhere or are in
 // no face. Cells are not made here (see products/cells), and distances by axis are refused.
+#include "products/offset/grow_layers.h"
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -18,7 +20,6 @@
 #include "products/layers/growth_columns.h"
 #include "products/layers/surface_layer_grower.h"
 #include "products/offset/faulty_miters.h"
-#include "products/offset/prepared_mesh.h"
 #include "valid/faults/face_error.h"
 #include "valid/faults/fault_finder.h"
 #include "valid/limit/limit.h"
@@ -27,22 +28,6 @@
 
 namespace vdb_offset {
 namespace {
-
-/// The heights of all vertices, one set for each layer.
-struct AskedHeights {
-  std::vector<Distances> of_all;
-  std::size_t disagreeing = 0;  // input vertices with another height than is asked for, in the layer with most of them
-};
-
-AskedHeights ask_heights(const PreparedMesh& mesh, std::span<const Distances> heights) {
-  AskedHeights asked;
-  for (const Distances& each : heights) {
-    std::size_t disagreeing = 0;
-    asked.of_all.push_back(mesh.distances_of_all(each, disagreeing));
-    asked.disagreeing = std::max(asked.disagreeing, disagreeing);
-  }
-  return asked;
-}
 
 /// Rounds the layers to what the file keeps, and measures their distances there.
 void round_to_file(const PreparedMesh& mesh, const ConstrainedSurface& constrained, LayerStack& stack, Paths& paths) {
@@ -151,11 +136,22 @@ LayersResult hand_over(const PreparedMesh& mesh, OffsetStatistics statistics, co
   return result;
 }
 
-LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, CellRules rules) {
+}  // namespace
+
+AskedHeights ask_heights(const PreparedMesh& mesh, std::span<const Distances> heights) {
+  AskedHeights asked;
+  for (const Distances& each : heights) {
+    std::size_t disagreeing = 0;
+    asked.of_all.push_back(mesh.distances_of_all(each, disagreeing));
+    asked.disagreeing = std::max(asked.disagreeing, disagreeing);
+  }
+  return asked;
+}
+
+LayersResult grow_marched(const PreparedMesh& mesh, const AskedHeights& asked, PreparedMesh::Marched marched,
+                          CellRules rules, std::span<const std::uint32_t> foot) {
   const OffsetOptions& options = mesh.options();
-  const AskedHeights asked = ask_heights(mesh, heights);
   const Distances& outer = asked.of_all.back();
-  PreparedMesh::Marched marched = std::move(mesh.march({&outer, 1}, Ridges::Smooth).front());
   Paths& paths = marched.paths;
   OffsetStatistics statistics = mesh.statistics();
   statistics.disagreeing_distances = asked.disagreeing;
@@ -175,7 +171,7 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   LayerStack stack;
   {
     const StageTimer timer(statistics.seconds, Stage::Layers);
-    columns.emplace(mesh.mesh(), constrained, mesh.source(), rules);
+    columns.emplace(mesh.mesh(), constrained, mesh.source(), rules, foot);
     stack = stack_layers(constrained, mesh.slides(), *columns, mesh.source(), asked.of_all, *faults, paths,
                          options.progress);
     round_to_file(mesh, constrained, stack, paths);
@@ -192,20 +188,23 @@ LayersResult grow_on(PreparedMesh& mesh, std::span<const Distances> heights, Cel
   return hand_over(mesh, std::move(statistics), *columns, paths, std::move(stack), asked.of_all);
 }
 
-}  // namespace
-
-LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
-                         CellRules rules) {
+void require_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options) {
   require_usable(mesh, heights, options);
   require_heights(heights, mesh.positions.size());
   if (!options.metric.even()) throw InvalidInput("metric: expected one in which all axes count alike, for layers");
-  const Reach farthest = farthest_of(heights.last(1));
-  VDB_OFFSET_ASSERT(goes_anywhere(farthest));
+  VDB_OFFSET_ASSERT(goes_anywhere(farthest_of(heights.last(1))));
+}
+
+LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
+                         CellRules rules) {
+  require_layers(mesh, heights, options);
   const OffsetOptions of_stages = with_call_progress(options);
   LayersResult result = in_arena(options.threads, [&](int threads) {
     const InMetric space(mesh, options.metric);
-    PreparedMesh prepared(space, of_stages, threads, farthest, {.layers = heights.size()});
-    return grow_on(prepared, heights, rules);
+    PreparedMesh prepared(space, of_stages, threads, farthest_of(heights.last(1)), {.layers = heights.size()});
+    const AskedHeights asked = ask_heights(prepared, heights);
+    return grow_marched(prepared, asked, std::move(prepared.march({&asked.of_all.back(), 1}, Ridges::Smooth).front()),
+                        rules);
   });
   count_states(result.states, result.statistics);
   report_share(of_stages.progress, Stage::Measure, 1);

@@ -231,6 +231,7 @@ Json figures_json(const LayerFigures& figures) {
           {"cells_by_type", cells},
           {"transition_cells", figures.transition_cells},
           {"area", figures.area},
+          {"fan_cells", figures.fan_cells},
           {"layers_reached", figures.layers_reached},
           {"coverage", figures.coverage},
           {"thickness_asked", spread_json(figures.asked)},

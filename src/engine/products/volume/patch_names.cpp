@@ -48,4 +48,13 @@ std::vector<std::string> patch_names(const WallNames& walls) {
   return names;
 }
 
+WallNames names_of_pieces(WallNames walls, const Refinement& refinement) {
+  if (walls.of_face.empty()) return walls;
+  std::vector<std::uint32_t> of_face;
+  of_face.reserve(refinement.parent.size());
+  for (const std::uint32_t parent : refinement.parent) of_face.push_back(walls.of_face[parent]);
+  walls.of_face = std::move(of_face);
+  return walls;
+}
+
 }  // namespace vdb_offset
