@@ -319,7 +319,7 @@ TEST_CASE("command: --strict-faces judges layers and iso-surfaces as well", "[co
   std::ofstream(shell.file("square.txt")) << "0 0\n1 0\n1 1\n0 1\n0 0\n";
   for (const std::string input : {"box.obj", "square.txt"}) {
     const std::string layers = input + " out.vtu --layers 3 --first-height 0.02 ";
-    const Run off = shell(layers + "--strict-faces 1 --report off.json");
+    const Run off = shell(layers + "--fan-angle 0 --strict-faces 1 --report off.json");
     CHECK(off.code == 3);
     CHECK_THAT(off.err, Catch::Contains("--strict-faces: out.vtu: 99 %") &&
                             Catch::Contains("--strict-faces: out.vtu at the first height: 99 %"));
@@ -999,11 +999,14 @@ TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][c
   const std::string layers = " --layers 3 --first-height 0.1 --growth 1.5 ";
   const Run run = shell("square.dat out.vtu" + layers + "--report r.json --states s.csv");
   REQUIRE(run.code == 0);
-  CHECK_THAT(run.out, Catch::Contains("3 layers full on 100.0 % of the length") && Catch::Contains("12 cells"));
+  CHECK_THAT(run.out, Catch::Contains("3 layers full on 100.0 % of the length") &&
+                          Catch::Contains("36 cells, 24 of them in fans over sharp edges"));
+  REQUIRE(shell("square.dat out.vtu" + layers + "--report r.json --fan-angle 0").code == 0);
   const auto report = nlohmann::json::parse(std::ifstream(shell.file("r.json")));
   // Corners go along the diagonals: a square in a square.
   const double side = 1 + 2 * 0.475 / std::sqrt(2.0);
   CHECK(report["layers"]["volume"] == Approx(side * side - 1));
+  CHECK(report["layers"]["fan_cells"] == 0);
   CHECK(report["layers"]["area"] == Approx(4));
   CHECK(report["layers"]["coverage"] == 1);
   for (const char* const right :
@@ -1015,8 +1018,8 @@ TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][c
   unsigned ni = 0, nj = 0, nk = 0;
   CHECK((block >> ni >> nj >> nk && ni == 5 && nj == 4 && nk == 1));
   for (const char* const made : {"layer_001.dat", "layer_002.dat", "layer_003.dat"}) CHECK(shell.has(made));
-  for (const char* const wrong :
-       {"none.msh", "none.xyz", "none.vtu --structured", "none.cgns", "none.obj --only group=a"}) {
+  for (const char* const wrong : {"none.msh", "none.xyz", "none.vtu --structured", "none.cgns",
+                                  "none.obj --only group=a", "none.dat --fan-angle 30"}) {
     INFO(wrong);
     const Run refused = shell(std::string("square.dat ") + wrong + layers);
     CHECK(refused.code == 1);

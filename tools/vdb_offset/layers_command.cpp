@@ -28,11 +28,19 @@ bool is_volume(const std::string& path) {
 /// Layers and their cells. Cells are always measured; over a mesh, they are made only if they are written.
 struct Grown {
   LayersResult layers;
+  /// Of what they are layers, if that is the source with opened edges, or corners of curves.
+  std::optional<Refinement> wall;
+  std::optional<Curves> opened_curves;
   WallNames names;
   std::optional<MeasuredCells> cells;
   VolumeMesh on_curves;
   LayerReport report;
   std::vector<float> scaled_jacobian;  ///< Of the cells, if a page shows them.
+
+  /// The wall that layers were grown on.
+  PolygonView mesh(const Source& source) const {
+    return wall ? wall->polygons.view() : opened_curves ? opened_curves->view() : source.view();
+  }
 };
 
 void measure_on_curves(CurvesView curves, Grown& grown, bool keep_quality) {
@@ -45,8 +53,10 @@ void measure_on_curves(CurvesView curves, Grown& grown, bool keep_quality) {
 
 void measure(const Source& source, Grown& grown, bool keep_quality) {
   if (source.file) grown.names = io::wall_names(*source.file);
-  grown.cells.emplace(source.view(), grown.layers);
-  grown.report = report_layers(source.view(), grown.layers, grown.names, grown.cells->facts(), grown.cells->quality());
+  if (grown.wall) grown.names = names_of_pieces(std::move(grown.names), *grown.wall);
+  const PolygonView mesh = grown.mesh(source);
+  grown.cells.emplace(mesh, grown.layers);
+  grown.report = report_layers(mesh, grown.layers, grown.names, grown.cells->facts(), grown.cells->quality());
   if (keep_quality) grown.scaled_jacobian = grown.cells->quality().scaled_jacobian;
 }
 
@@ -54,27 +64,47 @@ void measure(const Source& source, Grown& grown, bool keep_quality) {
 void grow(const Job& job, Grown& grown) {
   const Source& source = job.source;
   if (source.curves) {
-    grown.layers = grow_curve_layers(source.view(), job.distances, job.options);
+    FannedCurveLayers fanned =
+        grow_fanned_curve_layers(source.view(), job.distances, job.options, fan_angle_of(job.request));
+    grown.opened_curves = std::move(fanned.wall);
+    grown.layers = std::move(fanned.layers);
   } else {
     const bool foam = io::volume_format_of(job.request.output) == io::VolumeFormat::Foam;
-    grown.layers =
-        grow_layers(source.view(), job.distances, job.options, foam ? CellRules::OpenFoam : CellRules::AnySolver);
+    FannedLayers fanned = grow_fanned_layers(source.view(), job.distances, job.options, fan_angle_of(job.request),
+                                             foam ? CellRules::OpenFoam : CellRules::AnySolver);
+    grown.wall = std::move(fanned.wall);
+    grown.layers = std::move(fanned.layers);
   }
   const auto start = Clock::now();
   const bool keep_quality = !job.request.html.empty();
-  if (source.curves) measure_on_curves(source.view(), grown, keep_quality);
+  if (source.curves) measure_on_curves(grown.mesh(source), grown, keep_quality);
   else measure(source, grown, keep_quality);
   grown.layers.statistics.seconds[static_cast<std::size_t>(Stage::Measure)] += seconds_since(start);
 }
 
-void write_surfaces(const Job& job, const LayersResult& layers) {
-  const Source& source = job.source;
+/// What each vertex of a file has, of those that it has copies of: in STL facets have vertices of their own.
+std::vector<Vec3d> of_copies(std::span<const Vec3d> surface, std::span<const std::uint32_t> original) {
+  std::vector<Vec3d> copies;
+  copies.reserve(original.size());
+  for (const std::uint32_t v : original) copies.push_back(surface[v]);
+  return copies;
+}
+
+void write_surfaces(const Job& job, const Grown& grown) {
+  const LayersResult& layers = grown.layers;
+  std::optional<RefinedSource> opened;
+  if (grown.wall) opened = refined_source(job.source, *grown.wall);
+  const Source& source = opened ? opened->source : job.source;
+  const auto target = opened && source.file ? io::target_of(job.request.output, *source.file,
+                                                            write_options(job.request, job.request.output))
+                                            : job.target;
   for (std::size_t k = 0; k < layers.count(); ++k) {
     const std::string& path = job.files.layers[k];
-    const std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
+    std::vector<Vec3d> surface = layers.stacks.surface(k + 1);
+    if (opened && !opened->vertex.empty()) surface = of_copies(surface, opened->vertex);
     if (source.curves) write_curves(path, source, surface, write_options(job.request, path));
-    else if (source.file) report_losses(job.request, path, io::write_mesh(job.target->at(path), *source.file, surface));
-    else io::write_mesh(job.target->at(path), source.view(), surface);
+    else if (source.file) report_losses(job.request, path, io::write_mesh(target->at(path), *source.file, surface));
+    else io::write_mesh(target->at(path), source.view(), surface);
   }
 }
 
@@ -95,7 +125,7 @@ void write_block(const Job& job, Grown& grown) {
 void write_cells(const Job& job, Grown& grown) {
   if (job.request.layers->structured) write_block(job, grown);
   else if (is_volume(job.request.output)) write_volume(job, grown);
-  else write_surfaces(job, grown.layers);
+  else write_surfaces(job, grown);
 }
 
 /// \throw InvalidInput where nothing grows, with what may be the reason
@@ -135,7 +165,11 @@ void write_report_and_page(const Job& job, const Grown& grown, const Timing& tim
   if (request.report.empty() && request.html.empty()) return;
   const std::string report = layers_report(job, grown.layers, grown.report, timing.start);
   if (!request.report.empty()) write_file(request.report, report);
-  if (!request.html.empty()) write_page(job, grown.layers, grown.names, grown.scaled_jacobian, report);
+  if (!request.html.empty()) {
+    const bool opened = grown.wall || grown.opened_curves;
+    const std::optional<PolygonView> wall = opened ? std::optional(grown.mesh(job.source)) : std::nullopt;
+    write_page(job, wall, grown.layers, grown.names, grown.scaled_jacobian, report);
+  }
 }
 
 }  // namespace
@@ -159,7 +193,7 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   LayersResult& layers = grown.layers;
   require_cells(job, grown);
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
-  const PolygonView mesh = source.view();
+  const PolygonView mesh = grown.mesh(source);
   OutputFiles outputs(request.sync);
   outputs.report_to(bar.callback(), job.files.written.size());
   if (!request.states.empty())

@@ -15,6 +15,7 @@
 #include "vdb_offset/io/curve_file.h"
 #include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/view_file.h"
+#include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/report.h"
 
@@ -58,6 +59,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"total-thickness", text_of(layers.total)},
           {"growth", fmt::format("{}", layers.growth)},
           {"heights", layers.heights},
+          {"fan-angle", request.layers ? fmt::format("{}", fan_angle_of(request)) : ""},
           {"structured", layers.structured ? "true" : "false"},
           {"only", fmt::format("{}", fmt::join(request.only_texts, " "))},
           {"border", border},
@@ -187,6 +189,12 @@ void write_refinement(const Request& request, const RefinedSource& refined) {
     report_losses(request, path, written);
   }
   if (!map.empty()) io::write_vertex_map(map, refined.refinement, refined.vertex);
+}
+
+double fan_angle_of(const Request& request) {
+  constexpr double kDefault = 60;
+  const bool by_default = io::volume_format_of(request.output) && request.corners != Corners::Miter;
+  return request.layers->fan_angle.value_or(by_default ? kDefault : 0);
 }
 
 std::string layers_report(const Job& job, const LayersResult& result, const LayerReport& report,

@@ -46,6 +46,10 @@ void report_losses(const Request& request, const std::string& path, const io::Wr
 /// Writes the source with the faces that the offset has, and where the added vertices are, as far as that is asked for.
 void write_refinement(const Request& request, const RefinedSource& refined);
 
+/// The angle of fans over sharp edges, degrees: as given, else 60 where cells are written and no miters are asked for.
+/// 0: there are none.
+double fan_angle_of(const Request& request);
+
 /// The report of a run with --layers, as JSON.
 std::string layers_report(const Job& job, const LayersResult& result, const LayerReport& report,
                           Clock::time_point start);

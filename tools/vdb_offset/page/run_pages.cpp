@@ -131,9 +131,10 @@ void write_page(const Request& made, const Source& source, std::span<const Vec3d
   io::write_page(made.html, page);
 }
 
-void write_page(const Job& job, const LayersResult& layers, const WallNames& names, std::span<const float> quality,
-                const std::string& report) {
+void write_page(const Job& job, std::optional<PolygonView> wall, const LayersResult& layers, const WallNames& names,
+                std::span<const float> quality, const std::string& report) {
   io::Page page = page_of(job.request, job.source, report);
+  if (wall) page.source = *wall;
   page.are_layers = true;
   page.groups = &names;
   page.cell_quality = quality;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,9 +20,10 @@ std::string as_typed(int argc, const char* const* argv);
 void write_page(const Job& job, const Outcome& outcome, const std::string& report);
 
 /// Writes the page of layers, with the surface at each height.
-/// \param quality scaled Jacobians of the cells, if they are known
-void write_page(const Job& job, const LayersResult& layers, const WallNames& names, std::span<const float> quality,
-                const std::string& report);
+/// \param wall that they were grown on, if it is not the source \param quality scaled Jacobians of the cells, if they
+/// are known
+void write_page(const Job& job, std::optional<PolygonView> wall, const LayersResult& layers, const WallNames& names,
+                std::span<const float> quality, const std::string& report);
 
 /// Writes the page of an offset that was measured, of a mesh or of curves.
 void write_page(const Request& made, const Source& source, std::span<const Vec3d> positions, const CheckResult& result,

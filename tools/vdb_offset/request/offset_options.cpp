@@ -137,6 +137,15 @@ void declare_parts(CommandLine& line, Draft& draft) {
 }
 
 /// Declares the options that say what is made of the offset.
+/// The angle of fans over sharp edges, in degrees.
+double parse_fan_angle(const std::string& text) {
+  constexpr double kLeast = 5, kMost = 180;
+  constexpr const char* kExpected = "0, or degrees from 5 to 180";
+  const double angle = parse_number("--fan-angle", text, kExpected, kBelowZero, kMost);
+  if (angle > 0 && angle < kLeast) throw UsageError(fmt::format("--fan-angle: expected {}, got '{}'", kExpected, text));
+  return angle;
+}
+
 void declare_products(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
   line.flag("--shell",
@@ -160,6 +169,11 @@ void declare_products(CommandLine& line, Draft& draft) {
               number_between("--growth", "a number above 0, up to 10", 0, 10));
   line.option("--heights", "FILE", "A file of heights above the wall, one in each line, each as --distance",
               draft.layers.heights);
+  line.option(
+      "--fan-angle", "A",
+      "Open edges that bend by more than A degrees into fans of cells, no two sides of which are farther apart; "
+      "5 to 180, or 0 for none [60 for files of cells without --corners miter, else 0]",
+      draft.layers.fan_angle, parse_fan_angle);
   line.flag("--structured",
             "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
             draft.layers.structured);

@@ -45,6 +45,8 @@ void require_for_curves(const Request& request) {
               ": expected an output that ends in .dat, .txt, .xy, .svg, .dxf or .obj, or with --layers in "
               ".vtu, .su2, .vts or .xyz, as the input holds curves");
   require_structured(request);
+  require(!request.layers || request.layers->fan_angle.value_or(0) == 0 || volume,
+          request.output + ": expected .vtu or .su2 with --fan-angle for curves, whose files have no room for fans");
   require(!request.axes || request.write.digits == 0, "--precision and --distance-xy exclude each other for curves");
 }
 
@@ -154,7 +156,8 @@ void require_together(const GivenNames& given) {
        {"--mode iso"}},
       {{"--first-height", "--total-thickness", "--growth"}, Excludes, {"--heights"}},
       {{"--first-height", "--total-thickness", "--growth"}, NeedsAnyOf, {"--layers"}},
-      {{"--structured"}, NeedsAnyOf, {"--layers", "--heights"}},
+      {{"--structured", "--fan-angle"}, NeedsAnyOf, {"--layers", "--heights"}},
+      {{"--structured"}, Excludes, {"--fan-angle"}},
       {{"--layers"}, NeedsOneOf, {"--first-height", "--total-thickness", "--heights"}},
       {{"--max-faces", "--refined-source", "--map", "--strict-certified"},
        NeedsAnyOf,

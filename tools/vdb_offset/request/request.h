@@ -58,6 +58,7 @@ struct LayersRequest {
   double growth = 1.2;                          ///< Each layer's height by that of the one below.
   std::optional<DistanceRequest> first, total;  ///< One of them, unless there is a file.
   std::string heights;                          ///< A file with those of all layers, from the wall on.
+  std::optional<double> fan_angle;              ///< Degrees; 0: no fans.
   bool structured = false;                      ///< The mesh is a grid of quads, and so are the layers.
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "messages.h"
+#include "outputs.h"
 #include "summary/summary.h"
 
 namespace vdb_offset::tool {
@@ -36,6 +37,9 @@ bool may_be_split(const Job& job, const OffsetStatistics& statistics) {
          !job.shell && job.files.outputs.size() == 1 && !is_cad_output(job.request.output, job.request);
 }
 
+// The least angle of fans that is advised, degrees: they are finer than most meshes then.
+constexpr double kLeastFanAngle = 10;
+
 /// Why faces at sharp corners are off, and what helps. Where more than two faces meet at an edge, nothing does.
 std::string corners_in_words(const Job& job, const OffsetStatistics& statistics) {
   const bool any_branches = statistics.facts.non_manifold_edges > 0;
@@ -43,6 +47,9 @@ std::string corners_in_words(const Job& job, const OffsetStatistics& statistics)
   if (job.request.corners == Corners::Round)
     return fmt::format("is at sharp corners, where --corners round keeps the vertices at it{}",
                        may_be_split(job, statistics) ? ". To split the faces there: --tolerance 1%" : "");
+  if (const double angle = job.request.layers ? fan_angle_of(job.request) : 0; angle > 0 && !any_branches)
+    return fmt::format("is at sharp corners. Use a smaller angle of fans: --fan-angle {:.3g}",
+                       std::max(kLeastFanAngle, angle / 2));
   if (job.corners() == Corners::Round)
     return fmt::format("is at sharp corners. Use --corners miter{}{}",
                        may_be_split(job, statistics) ? ", or --tolerance 1% to split the faces there" : "",

@@ -301,11 +301,12 @@ Summary summary_of(const Job& job, const LayersResult& result, const LayerReport
   const Lengths& lengths = job.request.lengths;
   Summary made;
   made.verdict = fmt::format(
-      "{}: {} layers full on {} % of the {}, {} of {} thick on average; {} cells; scaled Jacobian: "
+      "{}: {} layers full on {} % of the {}, {} of {} thick on average; {} cells{}; scaled Jacobian: "
       "least {:.3g}, median {:.3g}",
       job.request.output, report.layers, area_percent(all.coverage, 1), report.plane ? "length" : "area",
-      lengths(all.reached.mean, 4), lengths(all.asked.mean, 4), all.cells, all.scaled_jacobian.least,
-      all.scaled_jacobian.median);
+      lengths(all.reached.mean, 4), lengths(all.asked.mean, 4), all.cells,
+      all.fan_cells > 0 ? fmt::format(", {} of them in fans over sharp edges", all.fan_cells) : "",
+      all.scaled_jacobian.least, all.scaled_jacobian.median);
   Remarks& remarks = made.remarks;
   if (report.inverted_block_cells > 0)
     remarks.add(Gravity::Wrong, fmt::format("{} cells of the block are collapsed or inverted, as where layers end",
