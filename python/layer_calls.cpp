@@ -38,10 +38,20 @@ struct Grown {
 
 enum class Product : bool { Cells, Block };
 
+/// The angle of fans, as the command has it; a block has none.
+double fan_angle_of(const py::dict& keywords, std::optional<Corners> corners, Product product) {
+  std::optional<double> angle;
+  Keywords(keywords).read("fan_angle", angle);
+  if (product == Product::Block) return 0;
+  constexpr double kDefault = 60;
+  return angle.value_or(corners == Corners::Miter ? 0 : kDefault);
+}
+
 Grown grow_on_curves(CurvesView curves, std::span<const Distances> heights, const OffsetOptions& options,
-                     Product product) {
-  Grown grown{grow_curve_layers(curves, heights, options), {}, {}, {}};
-  CurveCells cells = make_curve_cells(curves, grown.layers);
+                     double fan_angle, Product product) {
+  FannedCurveLayers fanned = grow_fanned_curve_layers(curves, heights, options, fan_angle);
+  Grown grown{std::move(fanned.layers), {}, {}, {}};
+  CurveCells cells = make_curve_cells(fanned.wall ? fanned.wall->view() : curves, grown.layers);
   grown.report =
       report_layers(cells.segments.view(), grown.layers, {}, cells.facts, measure_curve_cells(cells, grown.layers));
   if (product == Product::Block) grown.block = make_curve_block(curves, grown.layers);
@@ -53,6 +63,7 @@ Grown grow_on_curves(CurvesView curves, std::span<const Distances> heights, cons
 struct Walls {
   WallNames names;
   CellRules rules = CellRules::AnySolver;
+  double fan_angle = 0;
 };
 
 /// The names of faces, which are numbered as they come first. \throw InvalidInput unless each face has one
@@ -75,9 +86,9 @@ WallNames wall_names(const py::object& given, std::size_t faces) {
   return walls;
 }
 
-Walls walls_of(const py::dict& given, std::size_t faces) {
+Walls walls_of(const py::dict& given, std::size_t faces, std::optional<Corners> corners, Product product) {
   const Keywords keywords(given);
-  Walls walls{wall_names(keywords["walls"], faces)};
+  Walls walls{.names = wall_names(keywords["walls"], faces), .fan_angle = fan_angle_of(given, corners, product)};
   keywords.read("cells", walls.rules,
                 std::array{std::pair{"any", CellRules::AnySolver}, std::pair{"openfoam", CellRules::OpenFoam}});
   return walls;
@@ -85,14 +96,17 @@ Walls walls_of(const py::dict& given, std::size_t faces) {
 
 Grown grow_on_mesh(PolygonView mesh, std::span<const Distances> heights, const OffsetOptions& options,
                    const Walls& walls, Product product) {
-  Grown grown{grow_layers(mesh, heights, options, walls.rules), {}, {}, {}};
-  MeasuredCells cells(mesh, grown.layers);
-  grown.report = report_layers(mesh, grown.layers, walls.names, cells.facts(), cells.quality());
+  FannedLayers fanned = grow_fanned_layers(mesh, heights, options, walls.fan_angle, walls.rules);
+  Grown grown{std::move(fanned.layers), {}, {}, {}};
+  const PolygonView wall = fanned.wall ? fanned.wall->polygons.view() : mesh;
+  const WallNames names = fanned.wall ? names_of_pieces(walls.names, *fanned.wall) : walls.names;
+  MeasuredCells cells(wall, grown.layers);
+  grown.report = report_layers(wall, grown.layers, names, cells.facts(), cells.quality());
   if (product == Product::Block) {
     grown.block = make_block(mesh, grown.layers);
     grown.report.inverted_block_cells = inverted_cells(grown.block);
   } else {
-    grown.cells = std::move(cells).make(walls.names);
+    grown.cells = std::move(cells).make(names);
   }
   return grown;
 }
@@ -103,19 +117,25 @@ py::dict grown_arrays(Input input, Product product, const py::object& vertices, 
   const Source source(input, vertices, faces, keywords, MeshArrays::Corners::Copied);
   AskedOptions asked = asked_options(keywords, source);
   const std::vector<Distances> wanted = distances_of_all(heights, source, asked);
-  const Walls walls = walls_of(keywords, source.view().face_count());
+  const Walls walls = walls_of(keywords, source.view().face_count(), asked.options.corners, product);
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(asked.options);
   Grown grown = run([&] {
-    return source.curves() ? grow_on_curves(source.view(), wanted, asked.options, product)
+    return source.curves() ? grow_on_curves(source.view(), wanted, asked.options, walls.fan_angle, product)
                            : grow_on_mesh(source.view(), wanted, asked.options, walls, product);
   });
   RunFacts facts = facts_of_run("", start);
   facts.layers = std::move(grown.report);
-  const auto count = static_cast<py::ssize_t>(grown.layers.states.size());
+  py::dict statistics = from_json(report_json(grown.layers, facts));
+  // The input's vertices come first, of an opened edge as one of their copies.
+  const std::size_t vertex_count = source.view().positions.size();
+  grown.layers.states.resize(vertex_count);
+  grown.layers.share.resize(vertex_count);
+  grown.layers.achieved.resize(vertex_count);
+  const auto count = static_cast<py::ssize_t>(vertex_count);
   py::dict all =
       product == Product::Block ? block_as_dict(std::move(grown.block)) : volume_as_dict(std::move(grown.cells));
-  all["statistics"] = from_json(report_json(grown.layers, facts));
+  all["statistics"] = std::move(statistics);
   all["states"] = states_of(grown.layers.states);
   all["share"] = owning_array(std::move(grown.layers.share), {count});
   all["achieved"] = owning_array(std::move(grown.layers.achieved), {count});

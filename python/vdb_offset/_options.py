@@ -41,6 +41,9 @@ OPTIONS: Dict[str, Option] = {
                     'None: all are "wall"'),
     "cells": Option(Literal["any", "openfoam"], "any",
                     '"openfoam": valid as its checkMesh finds it, too, as in a polyMesh that the command writes'),
+    "fan_angle": Option(Optional[float], None,
+                        "edges that bend by more than so many degrees are opened into fans of cells, no two sides of\n"
+                        'which are farther apart; 5 to 180; 0: none; None: 60, and 0 with corners="miter"'),
     "inside": Option(Literal["winding", "never"], "winding",
                      '"winding": a mesh that is closed but for small holes has an inside; "never": it is open'),
     "adaptivity": Option(Optional[float], None,
@@ -108,7 +111,7 @@ OPTIONS: Dict[str, Option] = {
 }
 
 _HEIGHTS = ["count", "first", "total", "growth"]
-_OF_LAYERS = [*_HEIGHTS, "walls", "cells"]
+_OF_LAYERS = [*_HEIGHTS, "walls", "cells", "fan_angle"]
 _OF_ISO = ["inside", "adaptivity", "keep_specks"]
 _COMMON = ["precision", "voxel_size", "voxels_per_distance", "unit", "threads", "max_memory", "reserve", "progress"]
 #: What functions of one kind take.
@@ -117,7 +120,7 @@ CURVES = ["distance_z", "corners", "miter_limit", "collision", "close", "paths",
 ISO = [*_OF_ISO, "weld", "orient", *_COMMON]
 _NOT_OF_LAYERS = ("paths", "face_errors", "collision", "taper", "distance_z", "save_vdb")
 LAYERS = [*_OF_LAYERS, *(name for name in OFFSET if name not in _NOT_OF_LAYERS)]
-CURVE_LAYERS = [*_HEIGHTS, *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
+CURVE_LAYERS = [*_HEIGHTS, "fan_angle", *(name for name in CURVES if name not in _NOT_OF_LAYERS)]
 
 #: Stands in docstrings for the options.
 _PLACE = "    :param options: by keyword; `help()` describes each\n"

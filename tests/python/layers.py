@@ -56,10 +56,26 @@ class Layers(BesideTheCommand):
             grown = vdb_offset.layers(CUBE, QUADS, [0.1, 0.2], walls=walls)
             self.check_cells(grown, "made.su2")
         self.assertEqual(list(grown.patches), ["floor", "roof", "side_1", "wall_2nd", "outer_2", "outer"])
-        self.assertEqual([len(grown.patches[name][0]) - 1 for name in grown.patches], [1, 1, 2, 1, 1, 6])
+        self.assertEqual([len(grown.patches[name][0]) - 1 for name in grown.patches], [1, 1, 2, 1, 1, 6 + 12 * 2 + 8 * 12])
         with open(run.path("made.su2"), encoding="ascii") as file:
             self.assertEqual([line.split()[1] for line in file if line.startswith("MARKER_TAG")], list(grown.patches))
         self.assertEqual([patch["name"] for patch in grown.statistics["layers"]["patches"]], list(grown.patches)[:5])
+
+    def test_fans(self):
+        run = self.run_command
+        run.write("cube.obj", CUBE, QUADS)
+        run("cube.obj", "made.su2", "--layers", "2", "--total-thickness", "0.2", "--fan-angle", "30", "--report", "report.json")
+        grown = vdb_offset.layers(CUBE, QUADS, count=2, total=0.2, fan_angle=30)
+        self.check_cells(grown, "made.su2")
+        self.assertGreater(grown.statistics["layers"]["fan_cells"], 0)
+        self.assertEqual(len(grown.share), 8)
+        square, ring = CUBE[:4], np.array([[0, 1, 3, 2, 0]])
+        for angle, triangles in ((None, 8), (30, 12), (0, 0)):
+            fans = vdb_offset.curve_layers(square, ring, [0.1, 0.2], fan_angle=angle)
+            self.assertEqual(int((fans.cell_types == 5).sum()), triangles)
+            self.assertEqual(len(fans.states), 4)
+        with self.assertRaisesRegex(vdb_offset.InvalidInput, "^fan angle: expected 0 or 5"):
+            vdb_offset.layers(CUBE, QUADS, [0.1], fan_angle=3)
 
     def test_names_that_are_none(self):
         for wrong in (["a"] * 5, ["a"] * 7, "abcdef", ["a", "b", 3, "d", "e", "f"], 6, [b"a"] * 6, [None] * 6):

@@ -127,7 +127,7 @@ class Options(unittest.TestCase):
             self.assertIsInstance(caught.exception, vdb_offset.Error)
         # None is as good as nothing.
         vdb_offset.offset(*box, clearance=None, miter_limit=None, distance_z=None)
-        self.assertEqual(len(vdb_offset.layers(CUBE, QUADS, [0.1, 0.2], count=2).cell_types), 12)
+        self.assertEqual(len(vdb_offset.layers(CUBE, QUADS, [0.1, 0.2], count=2, corners="miter").cell_types), 12)
 
     def test_unknown_keywords_are_refused_by_name(self):
         for function, arguments in ((vdb_offset.shell, (CUBE, QUADS, 0.1)), (vdb_offset.check, (CUBE, QUADS, CUBE)),
