@@ -100,7 +100,8 @@ OpenedMesh::OpenedMesh(const PreparedMesh& source, const OpenedSource::Faces& fa
     polygons_.positions[v] = stand_off(at, targets_.displacement[v]);
     targets_.displacement[v] = (at + targets_.displacement[v]) - polygons_.positions[v];
   }
-  options_.weld = {};  // by position alone: copies stand close to each other
+  options_.reserve = {};  // the source's run has asked for memory
+  options_.weld = {};     // by position alone: copies stand close to each other
   if (!options_.only.empty()) {
     options_.only.clear();
     for (const std::uint32_t f : faces.refinement.parent) options_.only.push_back(source.options().only[f]);

@@ -147,7 +147,7 @@ FannedCurveLayers grow_fanned_curve_layers(CurvesView curves, std::span<const Di
   require_one_for_each_point(curves, heights);
   require_heights(heights, curves.positions.size());
   require_fan_angle(angle);
-  const OffsetOptions of_stages = with_call_progress(options);
+  OffsetOptions of_stages = with_call_progress(options);
   const auto grow = [&](CurvesView of, std::span<const Distances> to, int threads, Spacing spacing) {
     PreparedCurves prepared(of, of_stages,
                             plan_ribbon(of, of_stages, threads, farthest_of(to.last(1)), {.layers = to.size()}));
@@ -164,7 +164,8 @@ FannedCurveLayers grow_fanned_curve_layers(CurvesView curves, std::span<const Di
         std::all_of(layers.states.begin(), layers.states.end(), [](VertexState state) { return !falls_short(state); });
     FannedCurveLayers opened{std::move(fanned.curves), std::move(layers)};
     if (is_full) return opened;
-    // Fans may have less room than what they take the place of.
+    // Fans may have less room than what they take the place of. Memory has been asked for.
+    of_stages.reserve = {};
     LayersResult plain = grow(curves, heights, threads, Spacing::Even);
     if (plain.statistics.faces.mean < opened.layers.statistics.faces.mean) return {{}, std::move(plain)};
     return opened;
