@@ -319,6 +319,16 @@ bool GrowthColumns::rises_everywhere(std::size_t column, const VertexStacks& sta
   return true;
 }
 
+/// The splits of a column's sides, as its ring runs, but for those of what is flat, beside which no fan ends.
+void GrowthColumns::find_splits_of(std::size_t column, std::span<const std::uint32_t> ring, const VertexStacks& stacks,
+                                   int side, std::vector<SideSplit>& splits) const {
+  if (splits_.empty()) return;
+  splits.assign(splits_.begin() + begin_[column], splits_.begin() + begin_[column + 1]);
+  if (side < 0) turn_round(splits);
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    if (stacks.is_flat(ring[k]) || stacks.is_flat(ring[(k + 1) % ring.size()])) splits[k] = SideSplit::None;
+}
+
 /// Whether the column's cells will pass the quality measures that are reported for them.
 bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const {
   thread_local ColumnMesh cells;
@@ -338,12 +348,7 @@ bool GrowthColumns::has_valid_cells(std::size_t column, const VertexStacks& stac
   feet.clear(), splits.clear();
   if (is_at_fan(column)) {
     for (const std::uint32_t v : ring) feet.push_back(foot_[v]);
-    if (!splits_.empty() && ring.size() == base(column).size()) {
-      splits.assign(splits_.begin() + begin_[column], splits_.begin() + begin_[column + 1]);
-      if (side < 0) turn_round(splits);
-      for (std::size_t k = 0; k < ring.size(); ++k)  // no fan ends beside what is flat
-        if (flat(ring[k]) || flat(ring[(k + 1) % ring.size()])) splits[k] = SideSplit::None;
-    }
+    if (ring.size() == base(column).size()) find_splits_of(column, ring, stacks, side, splits);
   }
   cells.begin({numbers, feet, splits}, [&](std::size_t k) { return flat(ring[k]); });
   for (std::size_t layer = 0; layer < stacks.layers(); ++layer) {

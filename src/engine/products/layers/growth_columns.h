@@ -61,6 +61,8 @@ class GrowthColumns {
  private:
   bool rises_everywhere(std::size_t column, const VertexStacks& stacks, int side) const;
   bool has_valid_cells(std::size_t column, const VertexStacks& stacks, int side) const;
+  void find_splits_of(std::size_t column, std::span<const std::uint32_t> ring, const VertexStacks& stacks, int side,
+                      std::vector<SideSplit>& splits) const;
   bool is_of_prisms(std::size_t column, const VertexStacks& stacks) const;
   bool take_all(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source);
   void take_some(PolygonView mesh, const ConstrainedSurface& constrained, std::span<const Vec3d> source);
