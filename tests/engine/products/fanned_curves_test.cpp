@@ -88,6 +88,10 @@ TEST_CASE("fanned curves: a square's corners get a triangle for each step, and q
   CHECK(all.cells_by_type[static_cast<std::size_t>(CellType::Triangle)] == 4 * 3);
   CHECK(all.cells_by_type[static_cast<std::size_t>(CellType::Quadrilateral)] == 3 * 4 + 2 * 4 * 3);
   CHECK(all.fan_cells == 3 * 4 * 3);
+  const OffsetStatistics& statistics = made.grown.layers.statistics;
+  CHECK(statistics.facts.vertices == 4);
+  CHECK(statistics.facts.median_edge == Approx(1));
+  CHECK(statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)] == 4);
   CHECK(all.coverage == 1);
   CHECK(made.grown.report.volume == Approx(0.8 + std::numbers::pi * 0.04).epsilon(0.01));
   CHECK(made.grown.cells.mesh.patches.front().face_count() == 4);

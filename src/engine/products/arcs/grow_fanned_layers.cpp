@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "products/offset/grow_layers.h"
 #include "products/offset/stand_off.h"
 #include "valid/faults/fault_finder.h"
+#include "valid/faults/triangle_crossings.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/run.h"
 
@@ -150,7 +152,10 @@ class FanRun {
     sort_unique(short_fans_);
     OffsetStatistics& statistics = layers.statistics;
     for (std::size_t s = 0; s < kStageCount; ++s) statistics.seconds[s] += prepared_.statistics().seconds[s];
+    // What is said of the mesh is said of the one that was given.
     statistics.facts = prepared_.statistics().facts;
+    if (statistics.limit.source_crossings > 0 && !prepared_.surroundings())
+      statistics.limit.source_crossings = CrossingFinder(prepared_.surface(), prepared_.source()).listed().count();
     return {std::move(faces.refinement), std::move(layers)};
   }
 
@@ -176,7 +181,8 @@ FannedLayers grow_fanned_layers(PolygonView mesh, std::span<const Distances> hei
     PreparedMesh prepared(space, of_stages, threads, farthest_of(heights.last(1)), {.layers = heights.size()});
     return FanRun(prepared, heights, rules, threads).grow(angle);
   });
-  count_states(result.layers.states, result.layers.statistics);
+  // Those of the mesh's vertices, which come first; copies have the states of theirs.
+  count_states(std::span(result.layers.states).first(mesh.positions.size()), result.layers.statistics);
   report_share(of_stages.progress, Stage::Measure, 1);
   return result;
 }

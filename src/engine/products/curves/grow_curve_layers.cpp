@@ -126,6 +126,7 @@ void put_on_source(CurvesView source, std::span<const Distances> heights, const 
   wall.reserve(fanned.origin.size());
   for (const std::uint32_t p : fanned.origin) wall.push_back(source.positions[p]);
   layers.stacks.put_on_wall(wall);
+  layers.statistics.facts = facts_of(source, chains_in_plane(source));
   layers.foot = fanned.foot;
   layers.heights = copied_to(heights, fanned.origin);
   const Distances& outer = layers.heights.back();
@@ -170,7 +171,8 @@ FannedCurveLayers grow_fanned_curve_layers(CurvesView curves, std::span<const Di
     if (plain.statistics.faces.mean < opened.layers.statistics.faces.mean) return {{}, std::move(plain)};
     return opened;
   });
-  count_states(result.layers.states, result.layers.statistics);
+  // Those of the curves' points, which come first.
+  count_states(std::span(result.layers.states).first(curves.positions.size()), result.layers.statistics);
   report_share(of_stages.progress, Stage::Measure, 1);
   return result;
 }

@@ -122,6 +122,10 @@ TEST_CASE("fanned layers: a cube's edges get prisms along them, its corners tetr
   CHECK(grown.report.all.coverage == 1);
   CHECK(grown.report.all.faces_by_role[static_cast<std::size_t>(FaceRole::Full)] == 6);
   CHECK(grown.report.all.wall_angle.most < 1e-6);
+  // Figures of the mesh are those of the one that was given.
+  const OffsetStatistics& statistics = grown.fanned.layers.statistics;
+  CHECK(statistics.facts.vertices == 8);
+  CHECK(statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)] == 8);
   // The cube's faces come first, in their order, and their layers are parallel to them.
   for (std::size_t f = 0; f < 6; ++f) {
     CHECK(wall.parent[f] == f);
