@@ -272,7 +272,7 @@ def iso_shell(vertices: np.ndarray, faces: Faces, distance: Union[float, str], *
     return IsoShell(**_core.iso_shell(vertices, faces, wanted, keywords.pop("inner", None), keywords, progress))
 
 
-@takes(_options.LAYERS, without=["cells"])
+@takes(_options.LAYERS, without=["cells", "fan_angle"])
 def structured_layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None,
                       **options: Any) -> Block:
     """Grows layers on a mesh that is a grid of quads, as a structured block of hexahedra; see `layers()`.
@@ -289,7 +289,7 @@ def structured_layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequ
     return Block(**_core.structured_layers(vertices, faces, wanted, keywords, progress))
 
 
-@takes(_options.CURVE_LAYERS)
+@takes(_options.CURVE_LAYERS, without=["fan_angle"])
 def structured_curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None,
                             **options: Any) -> Block:
     """Grows layers on one plane curve, as a structured block of quadrilaterals; see `curve_layers()`.

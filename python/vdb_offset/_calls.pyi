@@ -180,7 +180,7 @@ def iso_shell(
 def structured_layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-    growth: Optional[float] = None, walls: Optional[Sequence[str]] = None, fan_angle: Optional[float] = None,
+    growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
     corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -196,11 +196,11 @@ def structured_layers(
 def structured_curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
     first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
-    fan_angle: Optional[float] = None, corners: Optional[Literal['miter', 'round', 'arc']] = None,
-    miter_limit: Optional[float] = None, close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
-    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
-    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
+    close: bool = False, precision: Union[Literal['double', 'single'], int] = 'double',
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
 def check(

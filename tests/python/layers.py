@@ -74,6 +74,8 @@ class Layers(BesideTheCommand):
             fans = vdb_offset.curve_layers(square, ring, [0.1, 0.2], fan_angle=angle)
             self.assertEqual(int((fans.cell_types == 5).sum()), triangles)
             self.assertEqual(len(fans.states), 4)
+        with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'fan_angle'"):
+            vdb_offset.structured_layers(CUBE, QUADS, [0.1], fan_angle=30)
         with self.assertRaisesRegex(vdb_offset.InvalidInput, "^fan angle: expected 0 or 5"):
             vdb_offset.layers(CUBE, QUADS, [0.1], fan_angle=3)
 
