@@ -56,7 +56,7 @@ class Layers(BesideTheCommand):
             grown = vdb_offset.layers(CUBE, QUADS, [0.1, 0.2], walls=walls)
             self.check_cells(grown, "made.su2")
         self.assertEqual(list(grown.patches), ["floor", "roof", "side_1", "wall_2nd", "outer_2", "outer"])
-        self.assertEqual([len(grown.patches[name][0]) - 1 for name in grown.patches], [1, 1, 2, 1, 1, 6 + 12 * 2 + 8 * 12])
+        self.assertEqual([len(grown.patches[name][0]) - 1 for name in grown.patches], [1, 1, 2, 1, 1, 6 + 12 * 2 + 8 * 6])
         with open(run.path("made.su2"), encoding="ascii") as file:
             self.assertEqual([line.split()[1] for line in file if line.startswith("MARKER_TAG")], list(grown.patches))
         self.assertEqual([patch["name"] for patch in grown.statistics["layers"]["patches"]], list(grown.patches)[:5])

@@ -112,13 +112,13 @@ TEST_CASE("fanned layers: a cube's edges get prisms along them, its corners tetr
   const FannedMesh grown = grow_fans(cube, heights);
   REQUIRE(grown.fanned.wall);
   const Refinement& wall = *grown.fanned.wall;
-  // Two columns over each edge, twelve over each corner, of a loop of six directions and a ring of three in it.
-  CHECK(wall.over_ridges == 12 * 2 + 8 * 12);
-  CHECK(wall.over_corners == 8 * 12);
-  CHECK(grown.cells_of(CellType::Tetrahedron) == 8 * 12);
-  CHECK(grown.cells_of(CellType::Prism) == 12 * 2 + 2 * 8 * 12);
+  // Two columns over each edge, and six over each corner: a loop of six directions around its middle.
+  CHECK(wall.over_ridges == 12 * 2 + 8 * 6);
+  CHECK(wall.over_corners == 8 * 6);
+  CHECK(grown.cells_of(CellType::Tetrahedron) == 8 * 6);
+  CHECK(grown.cells_of(CellType::Prism) == 12 * 2 + 2 * 8 * 6);
   CHECK(grown.cells_of(CellType::Hexahedron) == 3 * 6 + 2 * 12 * 2);
-  CHECK(grown.report.all.fan_cells == 3 * (12 * 2 + 8 * 12));
+  CHECK(grown.report.all.fan_cells == 3 * (12 * 2 + 8 * 6));
   CHECK(grown.report.all.coverage == 1);
   CHECK(grown.report.all.faces_by_role[static_cast<std::size_t>(FaceRole::Full)] == 6);
   CHECK(grown.report.all.wall_angle.most < 1e-6);
