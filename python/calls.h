@@ -18,7 +18,7 @@ py::list offset_arrays(Input input, const py::object& vertices, const py::object
 py::dict fit_arrays(const py::object& vertices, const py::object& faces, const py::tuple& other,
                     const py::object& clearance, const py::dict& keywords, const py::object& progress);
 py::dict refined_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
-                        const py::object& tolerance, std::size_t most_faces, const py::dict& keywords,
+                        const py::object& tolerance, std::size_t most_faces, bool ridges_only, const py::dict& keywords,
                         const py::object& progress);
 
 /// \param distance, tolerance each may be None

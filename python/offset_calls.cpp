@@ -83,13 +83,13 @@ py::dict origins_of(const std::vector<VertexOrigin>& added) {
 }  // namespace
 
 py::dict refined_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
-                        const py::object& tolerance, std::size_t most_faces, const py::dict& keywords,
+                        const py::object& tolerance, std::size_t most_faces, bool ridges_only, const py::dict& keywords,
                         const py::object& progress) {
   const auto start = Clock::now();
   const Source source(Input::Mesh, vertices, faces, keywords);
   AskedOptions asked = asked_options(keywords, source);
   asked.options.distance = distances_of(distance, source, asked);
-  Tolerance within{.most_faces = most_faces, .precision = asked.options.precision};
+  Tolerance within{.most_faces = most_faces, .precision = asked.options.precision, .ridges_only = ridges_only};
   std::tie(within.share, within.length) = tolerance_of(tolerance);
   Interruptible run(progress, Keywords(keywords)["reserve"]);
   run.attach(asked.options);

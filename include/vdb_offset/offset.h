@@ -130,6 +130,8 @@ struct VDB_OFFSET_API Tolerance {
   /// What the file that the refined mesh is for keeps of coordinates: those of vertices that are added are rounded to
   /// that; if it `rounds_all`, those of the mesh first, so that what is offset is what will be read.
   Precision precision;
+  /// With Corners::Arc: faces are added over ridges, and none are split.
+  bool ridges_only = false;
 
   /// The tolerance where the distance is `distance`, world units.
   double at(double distance) const;
@@ -152,15 +154,16 @@ struct RefinedOffset {
 /// of offset(), but for `metric`, `off_source`, `inner_skin_last`, `keep_field` and `keep_paths`; `keep_face_errors`
 /// has no effect. \throw as offset(), and InvalidInput for a tolerance that cannot be used, or one of these options
 ///
-/// With Corners::Arc faces are not split, but added over ridges: edges that are convex on the side to which they go
-/// (inward, concave ones), and bend by more than one vertex could serve within the tolerance. A vertex on ridges has a
-/// copy for each part of the surface between them, and more in between; all copies stand where it stands in the mesh,
-/// and each moves by itself: faces in their planes, and what lies between them on the round surface at the distance.
-/// The refinement has the mesh's faces in their order, with the copies of their corners; then strips of faces, edge by
-/// edge, then patches over corners (`over_ridges` and `over_corners` count them), each with one of the mesh's faces
-/// beside it for a parent. Ridges are not opened at borders of the surface or of the part that moves, in planes that
-/// vertices stay in, at edges of more than two faces, and where their strips would cross. `exact` has no effect. \throw
-/// OutOfBudget before more faces are made than may be
+/// With Corners::Arc faces are added over ridges, and then split where that is still needed, unless the tolerance is
+/// for `ridges_only`. Ridges are edges that are convex on the side to which they go (inward, concave ones), and bend by
+/// more than one vertex could serve within the tolerance. A vertex on ridges has a copy for each part of the surface
+/// between them, and more in between; all copies stand where it stands in the mesh, and each moves by itself: faces in
+/// their planes, and what lies between them on the round surface at the distance. The refinement has the mesh's faces
+/// in their order, with the copies of their corners; then strips of faces, edge by edge, then patches over corners
+/// (`over_ridges` and `over_corners` count them), each with one of the mesh's faces beside it for a parent. On borders,
+/// ridges are opened along the border. They are not at borders of the part that moves, where two planes hold a vertex,
+/// at edges of more than two faces, and where their strips would cross. `exact` has no effect. \throw OutOfBudget
+/// before more faces are made than may be
 VDB_OFFSET_API RefinedOffset offset_to_tolerance(PolygonView mesh, const OffsetOptions& options,
                                                  const Tolerance& tolerance);
 

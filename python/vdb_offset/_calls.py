@@ -85,11 +85,12 @@ def offset_curves(points: np.ndarray, curves: Faces, distance: Distance, **optio
 
 @takes(_options.OFFSET, without=["paths", "face_errors", "distance_z", "save_vdb"])
 def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, tolerance: Union[float, str], *,
-                        max_faces: int = 0, **options: Any) -> Refined:
+                        max_faces: int = 0, ridges_only: bool = False, **options: Any) -> Refined:
     """Offsets a mesh, and splits its faces until they are proven to be at the distance, at every point of them.
 
     :param tolerance: how far off they may be: world units, or a text with a percentage of the distance
     :param max_faces: no more are made; 0: 20 times as many as the mesh has, at least a million
+    :param ridges_only: with corners="arc", add faces over sharp edges, and split none
     :param options: by keyword; `help()` describes each
     :raises InvalidInput, InvalidOption, OutOfBudget, Cancelled:
 
@@ -104,7 +105,7 @@ def offset_to_tolerance(vertices: np.ndarray, faces: Faces, distance: Distance, 
         raise _core.InvalidOption(f"max_faces: expected a whole number, 0 or more, got {max_faces!r}")
     keywords, unit = given(offset_to_tolerance, options), options.get("unit")
     wanted, within = length("distance", distance, unit), length("tolerance", tolerance, unit)
-    return Refined(**_core.offset_to_tolerance(vertices, faces, wanted, within, max_faces, *keywords))
+    return Refined(**_core.offset_to_tolerance(vertices, faces, wanted, within, max_faces, bool(ridges_only), *keywords))
 
 
 @takes(_options.OFFSET, without=["obstacles", "clearance", "distance_z", "corners", "miter_limit", "collision",

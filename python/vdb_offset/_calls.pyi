@@ -62,9 +62,9 @@ def offset_curves(
 
 def offset_to_tolerance(
     vertices: np.ndarray, faces: Faces, distance: Distance, tolerance: Union[float, str], *, max_faces: int = 0,
-    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
-    collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0, only: Optional[np.ndarray] = None,
-    border: Literal['slide', 'fixed', 'free'] = 'slide',
+    ridges_only: bool = False, corners: Optional[Literal['miter', 'round', 'arc']] = None,
+    miter_limit: Optional[float] = None, collision: Literal['limit', 'merge'] = 'limit', taper: float = 1.0,
+    only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
     obstacles: Optional[Tuple[np.ndarray, Faces]] = None, clearance: Union[float, str, None] = None,
     weld: Union[Literal['auto', 'exact', 'none'], float, str] = 'auto',

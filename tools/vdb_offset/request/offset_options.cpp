@@ -92,7 +92,8 @@ void declare_tolerance(CommandLine& line, Draft& draft) {
   line.option("--tolerance", "T",
               "Split faces until every point of them is proven to be within T of the distance, wherever vertices reach "
               "it: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
-              "take its place. With --corners arc: how far the faces over sharp edges may be off [1%]",
+              "take its place. With --corners arc: how far faces over sharp edges may be off, too "
+              "[1%, and faces are not split]",
               request.tolerance, parse_tolerance, request.text);
   line.option(
       "--max-faces", "N",
@@ -355,6 +356,7 @@ void complete(Draft& draft) {
     request.tolerance = draft.tolerance;
     request.tolerance->text = "1%";
     request.tolerance->tolerance.share = parse_tolerance(request.tolerance->text).share;
+    request.tolerance->tolerance.ridges_only = true;
   }
   if (has("--layers") || has("--heights")) request.layers = draft.layers;
   if (draft.no_sync) request.sync = OutputFiles::Sync::No;

@@ -109,7 +109,9 @@ OpenedMesh::OpenedMesh(const PreparedMesh& source, const OpenedSource::Faces& fa
   distances_ = copied_to(distances, origins_of(faces.refinement));
   options_.distance = distances_.back();
   space_.emplace(polygons_.view(), options_.metric);
-  prepared_.emplace(*space_, options_, threads, farthest_of(std::span(distances_).last(1)), yield);
+  Yield of_opened = yield;
+  of_opened.measured_faces = static_cast<std::uint32_t>(faces.refinement.faces_in_place());
+  prepared_.emplace(*space_, options_, threads, farthest_of(std::span(distances_).last(1)), of_opened);
 }
 
 std::unique_ptr<OpenedMesh> open_without_tangles(const PreparedMesh& source, OpenedSource& opened,

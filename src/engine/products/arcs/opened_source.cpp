@@ -194,7 +194,10 @@ void OpenedSource::find_ends() {
   std::vector<std::uint32_t> copy_of_ray;
   for (std::uint32_t c = 0; c < copies_.size(); ++c) {
     const double distance = std::abs(distances_[copies_[c].vertex]);
-    if (closest[c].distance >= distance * (1 - kReachedTolerance)) continue;
+    // Where a border's plane leans over a face, no edge beside that could be opened to bring its point nearer.
+    const bool is_too_far = opening_.farthest_plane && closest[c].distance > *opening_.farthest_plane * distance &&
+                            opened_[number_[copies_[c].vertex]].fan.is_at_border;
+    if (closest[c].distance >= distance * (1 - kReachedTolerance) && !is_too_far) continue;
     rays.push_back({surface.vertices[copies_[c].vertex], copies_[c].displacement.unit(), distance});
     copy_of_ray.push_back(c);
   }

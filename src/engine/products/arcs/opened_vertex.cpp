@@ -24,16 +24,19 @@ constexpr double kLeastRise = 0.2;
 // faces beside it have an area. Not measured.
 constexpr double kBeyondTip = 0.1;
 
-/// The normals of the planes in a sector, on the side that the vertex goes to. Faces of any size count, as each needs
-/// its copies.
+/// The normals of the planes in a sector, on the side that the vertex goes to, without what leads out of the planes
+/// that the vertex has to stay in. Faces of any size count, as each needs its copies.
 std::vector<Vec3d> normals_in(const Surface& surface, const RidgeFan& fan, std::uint32_t sector) {
   std::vector<std::uint32_t> faces;
   for (std::size_t i = 0; i < fan.triangles.size(); ++i)
     if (fan.sector[i] == sector) faces.push_back(fan.triangles[i]);
-  return planes_of(
-             surface, faces, [&](std::uint32_t t) { return surface.triangle_normals[t] * fan.side; },
-             [&](std::uint32_t t) { return std::min(surface.tilt(t), kMostTilt); })
-      .normals;
+  std::vector<Vec3d> normals =
+      planes_of(
+          surface, faces, [&](std::uint32_t t) { return surface.triangle_normals[t] * fan.side; },
+          [&](std::uint32_t t) { return std::min(surface.tilt(t), kMostTilt); })
+          .normals;
+  for (Vec3d& normal : normals) normal = surface.along_border(fan.vertex, normal);
+  return normals;
 }
 
 /// What is at a right angle to an axis, of unit length.

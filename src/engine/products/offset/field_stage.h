@@ -22,7 +22,9 @@ namespace vdb_offset {
 struct Yield {
   std::size_t results = 1, layers = 0;
   bool has_targets = false;  ///< Vertices have targets (see vertex_targets.h): no field is made.
-  bool by_corner = false;    ///< Something is told by the corners of faces, which hanging vertices are none of.
+  /// Distances are measured from the first so many faces: all others lie on their edges, but for rounding.
+  std::uint32_t measured_faces = kNone;
+  bool by_corner = false;  ///< Something is told by the corners of faces, which hanging vertices are none of.
 };
 
 /// The farthest that any vertex goes on each side, for any of the distances; world units, 0 on a side where none goes.

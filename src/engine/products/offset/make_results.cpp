@@ -198,7 +198,7 @@ class ResultMaker {
     const StageTimer timer(draft.statistics.seconds, Stage::Limit);
     draft.statistics.limit = limit(*draft.faults,
                                    {draft.constrained, mesh_.source(), draft.distances, draft.marched.paths,
-                                    &draft.marched.mitered, keeps_faces(draft), options_.taper},
+                                    &draft.marched.mitered, keeps_faces(draft), options_.taper, mesh_.measured_faces()},
                                    progress, start, to_start);
     if (mesh_.surroundings()) draft.statistics.limit.source_crossings -= mesh_.surroundings()->crossing();
     if (options_.keep_face_errors) draft.face_faults = draft.faults->of_faces(mesh_.mesh().face_count());

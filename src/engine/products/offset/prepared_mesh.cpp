@@ -122,7 +122,8 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
     : space_(space),
       mesh_(space.view()),
       options_(options),
-      corners_(options.corners.value_or(yield.layers > 0 ? Corners::Round : Corners::Miter)) {
+      corners_(options.corners.value_or(yield.layers > 0 ? Corners::Round : Corners::Miter)),
+      measured_faces_(yield.measured_faces) {
   const bool moves = goes_anywhere(farthest);
   GridPlan plan;
   const auto corners = static_cast<double>(mesh_.corners.size()), faces = static_cast<double>(mesh_.face_count()),
@@ -148,7 +149,7 @@ PreparedMesh::PreparedMesh(const InMetric& space, const OffsetOptions& options, 
   if (moves) reserve_memory(options.reserve, plan.bytes);
   if (moves && !yield.has_targets) field_ = make_field(parts_.moving_part, plan, false, options, statistics_);
   const StageTimer timer(statistics_.seconds, moves ? Stage::Propagate : Stage::Rasterise);
-  if (moves) query_.emplace(parts_.moving_part);
+  if (moves) query_.emplace(parts_.moving_part, yield.measured_faces);
   if (moves && options.exact && options.metric.even())
     exact_.emplace(*options.exact, mesh_, options.only, parts_.moving_part);
   if (moves || parts_.obstacles) source_ = parts_.source(mesh_);

@@ -64,6 +64,8 @@ class PreparedMesh {
   const Obstacles* obstacles() const { return surroundings_ ? &surroundings_->obstacles() : nullptr; }
   /// How border vertices slide; nullptr if none does.
   const BorderSlides* slides() const { return slides_ ? &*slides_ : nullptr; }
+  /// How many of the first faces distances are measured from: others lie over ridges.
+  std::uint32_t measured_faces() const { return measured_faces_; }
   /// Figures of what has been done so far, which those of each result begin with.
   const OffsetStatistics& statistics() const { return statistics_; }
 
@@ -107,6 +109,7 @@ class PreparedMesh {
   PolygonView mesh_;
   const OffsetOptions& options_;
   Corners corners_;
+  std::uint32_t measured_faces_;
   OffsetStatistics statistics_;
   MeshParts parts_;
   DistanceField field_;

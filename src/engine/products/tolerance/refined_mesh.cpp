@@ -11,15 +11,18 @@
 namespace vdb_offset {
 
 RefinedMesh::RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
-                         const Rounding& precision, int threads, bool crosses_nothing, std::span<const FacePair> met)
+                         const Rounding& precision, int threads, const Yield& yield, bool crosses_nothing,
+                         std::span<const FacePair> met)
     : mesh_(mesh),
       options_(options),
       precision_(precision),
       threads_(threads),
+      yield_(yield),
       crosses_nothing_(crosses_nothing),
-      by_corner_(!options.distance.at_corner().empty()),
       met_(met) {
   refinement_ = triangles.of_mesh(mesh, numbers_, &triangle_of_face_);
+  const auto faces = std::lower_bound(refinement_.parent.begin(), refinement_.parent.end(), yield.measured_faces);
+  yield_.measured_faces = static_cast<std::uint32_t>(faces - refinement_.parent.begin());
   if (options.only.empty()) return;
   options_.only.clear();
   for (const std::uint32_t f : refinement_.parent) options_.only.push_back(options.only[f]);
@@ -41,14 +44,14 @@ void RefinedMesh::prepare(const std::vector<RefinedVertex>& vertices) {
     const std::uint32_t v = numbers_.of_vertex[i];
     if (v == kNone) continue;
     targets.displacement[v] = vertices[i].target.displacement;
-    targets.state[v] = !vertices[i].target.is_there    ? vertices[i].otherwise
-                       : vertices[i].target.is_mitered ? VertexState::Mitered
-                                                       : VertexState::Reached;
+    const bool is_mitered = vertices[i].target.is_mitered || vertices[i].otherwise == VertexState::Mitered;
+    targets.state[v] = !vertices[i].target.is_there ? vertices[i].otherwise
+                       : is_mitered                 ? VertexState::Mitered
+                                                    : VertexState::Reached;
   }
   if (!each.empty()) options_.distance = Distances(std::move(each));
   space_.emplace(refinement_.polygons.view(), options_.metric);
-  prepared_.emplace(*space_, options_, threads_, farthest_of({&options_.distance, 1}),
-                    Yield{.has_targets = true, .by_corner = by_corner_});
+  prepared_.emplace(*space_, options_, threads_, farthest_of({&options_.distance, 1}), yield_);
   asked_ = ask(*prepared_, {&options_.distance, 1});
   marched_.push_back(prepared_->marched_to(asked_->moved.front(), targets));
 }

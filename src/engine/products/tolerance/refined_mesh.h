@@ -27,10 +27,12 @@ class RefinedMesh {
  public:
   /// Keeps a reference to the mesh that the triangles are of. `options` are those of the mesh, `precision` that
   /// which vertices were rounded to when they were added.
+  /// \param yield that of the mesh
   /// \param crosses_nothing the mesh is known not to cross itself
   /// \param met pairs of the mesh's faces that meet in it, or in its offset without any splits: their pieces may
   RefinedMesh(const RefinedTriangles& triangles, PolygonView mesh, const OffsetOptions& options,
-              const Rounding& precision, int threads, bool crosses_nothing, std::span<const FacePair> met);
+              const Rounding& precision, int threads, const Yield& yield, bool crosses_nothing,
+              std::span<const FacePair> met);
   RefinedMesh(const RefinedMesh&) = delete;
   RefinedMesh& operator=(const RefinedMesh&) = delete;
 
@@ -51,7 +53,8 @@ class RefinedMesh {
   OffsetOptions options_;
   const Rounding precision_;
   int threads_;
-  bool crosses_nothing_, by_corner_;
+  Yield yield_;
+  bool crosses_nothing_;
   std::span<const FacePair> met_;
   RefinedTriangles::Numbers numbers_;
   std::vector<std::uint32_t> triangle_of_face_;

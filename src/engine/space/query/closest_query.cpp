@@ -16,7 +16,7 @@
 
 namespace vdb_offset {
 
-ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
+ClosestQuery::ClosestQuery(const Surface& surface, std::uint32_t faces) : surface_(surface), faces_(faces) {
   VDB_OFFSET_ASSERT(!surface.triangles.empty() && surface.triangle_normals.size() == surface.triangles.size());
   const Vec3d lower = surface.facts.lower - surface.origin, upper = surface.facts.upper - surface.origin;
   double reach = 0;
@@ -30,7 +30,8 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
   tree_.build(rectangles_.size(), [&](std::size_t leaf) {
     rectangles_[leaf] = rectangles_of(leaf);
     FloatBox box;
-    for (std::size_t t = leaf * kSize; t < std::min((leaf + 1) * kSize, surface_.triangles.size()); ++t)
+    for (std::size_t t = leaf * kSize; t < std::min((leaf + 1) * kSize, surface_.triangles.size()); ++t) {
+      if (!is_looked_at(t)) continue;
       for (const auto v : surface_.triangles[t])
         for (int k = 0; k < 3; ++k) {
           const auto x = static_cast<float>(surface_.vertices[v][k] * scale_);
@@ -38,6 +39,7 @@ ClosestQuery::ClosestQuery(const Surface& surface) : surface_(surface) {
           box.lower[axis] = std::min(box.lower[axis], x);
           box.upper[axis] = std::max(box.upper[axis], x);
         }
+    }
     return box;
   });
 }
@@ -48,7 +50,7 @@ ClosestQuery::Rectangles ClosestQuery::rectangles_of(std::size_t leaf) const {
   Rectangles some{};
   for (int i = 0; i < kLeafSize; ++i) {
     const std::size_t t = leaf * kLeafSize + static_cast<std::size_t>(i);
-    if (t >= surface_.triangles.size()) {
+    if (t >= surface_.triangles.size() || !is_looked_at(t)) {
       some.centre[0][i] = kNowhere;
       continue;
     }

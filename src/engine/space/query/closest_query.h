@@ -34,8 +34,9 @@ inline constexpr double kFreeShare = 0.9;
 /// threads.
 class ClosestQuery {
  public:
-  /// Keeps a reference to the surface. \pre the surface is in its local frame, and has a triangle.
-  explicit ClosestQuery(const Surface& surface);
+  /// Keeps a reference to the surface. \param faces only the triangles of so many first faces are looked at: all others
+  /// lie on their edges, but for rounding. \pre the surface is in its local frame, and has a triangle.
+  explicit ClosestQuery(const Surface& surface, std::uint32_t faces = kNone);
 
   /// The closest point of the surface to x. Among equally close triangles the answer depends only on x, the hint
   /// and the surface. `hint` is any triangle, best one that was close to a point nearby.
@@ -108,6 +109,7 @@ class ClosestQuery {
   double farthest_tie(double distance) const {
     return distance * (1 + 1e-9) + 2.5e-8 * static_cast<double>(slack_) / scale_;
   }
+  bool is_looked_at(std::size_t triangle) const { return surface_.face[triangle] < faces_; }
   Rectangles rectangles_of(std::size_t leaf) const;
   std::size_t find_blocks(std::span<const Ball> balls, Blocks& blocks) const;
   static unsigned near_siblings(const BoxTree::Siblings& box, const float* local, float limit, float* squared);
@@ -116,6 +118,7 @@ class ClosestQuery {
   static unsigned planes_before(const Rectangles& some, const float* local, float limit, Planes& planes);
 
   const Surface& surface_;
+  std::uint32_t faces_;
   std::vector<Rectangles> rectangles_;
   BoxTree tree_;
   double scale_;  // the power of two that scales coordinates to a size near 1

@@ -21,6 +21,8 @@ struct SurfaceOffset {
   MiteredPaths* mitered = nullptr;  ///< Of these vertices, if any are mitered.
   bool keeps_faces = false;  ///< Faces are to be at the distance: no vertex slides where that loses more of them.
   double taper = 0;          ///< See OffsetOptions::taper.
+  /// Faces from this one on lie over ridges: their vertices count as on creases.
+  std::uint32_t first_over_ridges = kNone;
 };
 
 /// Makes a result valid: no inverted face, no collapsed one, no pair of triangles that meet anew (see fault_finder.h

@@ -29,6 +29,7 @@ LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, c
       paths(offset.paths),
       mitered(offset.mitered),
       keeps_faces(offset.keeps_faces),
+      first_over_ridges(offset.first_over_ridges),
       faults(fault_finder),
       started_from(warm),
       whole(offset.paths.displacement),
@@ -45,7 +46,11 @@ LimitState::LimitState(FaultFinder& fault_finder, const SurfaceOffset& offset, c
 }
 
 void LimitState::find_creases() {
-  if (on_crease.empty()) on_crease = vertices_on_creases(surface);
+  if (!on_crease.empty()) return;
+  on_crease = vertices_on_creases(surface);
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+    if (surface.face[t] >= first_over_ridges && constrained.triangle_on_part(t))
+      for (const std::uint32_t v : surface.triangles[t]) on_crease[v] = 1;
 }
 
 bool LimitState::has_many_faults() const {

@@ -34,6 +34,7 @@ struct LimitState {
   Paths& paths;           ///< Keeps states and displacements of the beginning; the result is written by limit().
   MiteredPaths* mitered;  ///< Null if no vertex is mitered.
   bool keeps_faces;       ///< See SurfaceOffset.
+  std::uint32_t first_over_ridges;  ///< See SurfaceOffset.
   FaultFinder& faults;
   const WarmStart* started_from;  ///< Null without one.
 
