@@ -89,12 +89,13 @@ void declare_distances(CommandLine& line, Draft& draft) {
 /// Declares the options for a distance that holds at every point.
 void declare_tolerance(CommandLine& line, Draft& draft) {
   ToleranceRequest& request = draft.tolerance;
-  line.option("--tolerance", "T",
-              "Split faces until every point of them is proven to be within T of the distance, wherever vertices reach "
-              "it: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
-              "take its place. With --corners arc: how far faces over sharp edges may be off, too "
-              "[1%, and faces are not split]",
-              request.tolerance, parse_tolerance, request.text);
+  line.option(
+      "--tolerance", "T",
+      "Split faces until every point of them is proven to be within T of the distance, wherever vertices reach "
+      "it: world units, or percent of the distance; vertices of INPUT come first, and the pieces of a face "
+      "take its place. With --corners arc, faces over sharp edges are within T as well; without --tolerance, these are "
+      "within 1%, and no faces are split",
+      request.tolerance, parse_tolerance, request.text);
   line.option(
       "--max-faces", "N",
       "With --tolerance or --corners arc: make no more faces than this [20 times as many as INPUT has, at least a "
