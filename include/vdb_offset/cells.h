@@ -237,6 +237,17 @@ struct LayerFigures {
   Spread wall_angle;                             ///< Degrees, of the cells at the wall: 0 is best.
 };
 
+/// What filling the rest of the domain found and made: see fill_volume().
+struct FillReport {
+  std::size_t tetrahedra = 0, pyramids = 0, split_cells = 0;
+  std::size_t added_points = 0;
+  std::size_t front = 0;   ///< Triangles that the tetrahedra had to keep.
+  double volume = 0;       ///< Of tetrahedra and pyramids, world units^3.
+  Spread scaled_jacobian;  ///< Of both (see cell_quality.h).
+  Spread jump;             ///< Volumes of tetrahedra at the layers by those of the cells behind, 1 or more either way.
+  double seconds = 0;      ///< That the filler took.
+};
+
 struct LayerReport {
   std::size_t layers = 0;
   LayerFigures all;
@@ -246,6 +257,7 @@ struct LayerReport {
   double volume = 0;                  ///< Of all cells, world units^3; on curves their area, ^2.
   std::size_t points = 0;
   LayerStatistics growing;
+  std::optional<FillReport> fill;        ///< If the rest of the domain was filled.
   std::optional<FoamQuality> foam;       ///< If a mesh has been written for OpenFOAM.
   std::size_t inverted_block_cells = 0;  ///< Cells of a structured block that was written, with a Jacobian not above 0.
   std::size_t turned_faces = 0, border_sides = 0, unpaired_sides = 0, split_points = 0, coincident_sides = 0;

@@ -11,9 +11,9 @@
 namespace vdb_offset {
 
 /// The stages of a run, in the order in which they happen.
-enum class Stage { Read, Rasterise, Sweep, Gradient, Propagate, Capture, Limit, Refine, Layers, Measure, Write };
+enum class Stage { Read, Rasterise, Sweep, Gradient, Propagate, Capture, Limit, Refine, Layers, Measure, Fill, Write };
 
-inline constexpr std::size_t kStageCount = 11;
+inline constexpr std::size_t kStageCount = 12;
 
 /// Name of a stage as reports and progress bars spell it.
 VDB_OFFSET_API const char* name(Stage stage);

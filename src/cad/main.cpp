@@ -12,10 +12,10 @@
 #include <cstdio>
 #include <new>
 
-#include "messages/message_channel.h"
-#include "messages/progress.h"
+#include "ground/process/message_channel.h"
+#include "ground/process/progress.h"
 #include "vdb_offset/api.h"
-#include "worker/guard.h"
+#include "ground/process/guard.h"
 #include "worker/requests.h"
 
 namespace vdb_offset::cad {
@@ -40,12 +40,12 @@ std::string in_short(const char* words) {
   return line.empty() ? "an error without a text" : line;
 }
 
-Reply reply_to(Requests& requests, const io::Message& asked) {
+Reply reply_to(Requests& requests, const Message& asked) {
   try {
     return {io::CadReply::Done, requests.answer(static_cast<io::CadRequest>(asked.kind), asked.payload)};
   } catch (const InvalidCad& invalid) {
     return {io::CadReply::InvalidFile, invalid.what()};
-  } catch (const io::BadMessage& bad) {
+  } catch (const BadMessage& bad) {
     return {io::CadReply::Failed, bad.what()};
   } catch (const std::bad_alloc&) {
     return {io::CadReply::OutOfMemory, kTooLarge};
@@ -62,12 +62,12 @@ Reply reply_to(Requests& requests, const io::Message& asked) {
 }
 
 void serve() {
-  io::MessageChannel messages{io::OpenFile(io::kWorkerMessages)};
+  MessageChannel messages{OpenFile(kWorkerMessages)};
   messages.send(static_cast<std::uint32_t>(io::CadReply::Version), VDB_OFFSET_VERSION, {});
-  io::report_progress_to(io::kWorkerMessages);
+  report_progress_to(kWorkerMessages);
   Requests requests;
   while (true) {
-    const io::Message asked = messages.receive({}, kMostOfRequest);
+    const Message asked = messages.receive({}, kMostOfRequest);
     const Reply reply = reply_to(requests, asked);
     messages.send(static_cast<std::uint32_t>(reply.kind), reply.payload, {});
   }
@@ -78,17 +78,17 @@ void serve() {
 
 int main(int, char** words) {
   using namespace vdb_offset;
-  if (::fcntl(io::kWorkerEnd, F_GETFD) < 0 || ::fcntl(io::kWorkerMessages, F_GETFD) < 0) {
+  if (::fcntl(kWorkerEnd, F_GETFD) < 0 || ::fcntl(kWorkerMessages, F_GETFD) < 0) {
     std::fprintf(stderr, "%s: is started by vdb_offset, for CAD files\n", words[0]);
     return 1;
   }
-  ::close_range(io::kWorkerEnd + 1, ~0U, 0);  // what else the program had open
-  cad::start_guard();
-  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+  ::close_range(kWorkerEnd + 1, ~0U, 0);  // what else the program had open
+  start_guard();
+  ::Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   try {
     cad::serve();
-  } catch (const io::Hangup&) {
-  } catch (const io::BadMessage&) {
+  } catch (const Hangup&) {
+  } catch (const BadMessage&) {
   }
   ::_exit(0);  // without giving back what the model is made of, piece by piece
 }

@@ -261,12 +261,12 @@ TEST_CASE("cad: messages that are cut off or lead astray are refused", "[cad]") 
   CHECK(back.faces[0].instance == "left");
   CHECK(back.faces[0].within == mesh.faces[0].within);
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    REQUIRE_THROWS_AS(io::unpack_mesh(std::string_view(bytes).substr(0, size)), io::BadMessage);
-  CHECK_THROWS_AS(io::unpack_mesh(bytes + "x"), io::BadMessage);
+    REQUIRE_THROWS_AS(io::unpack_mesh(std::string_view(bytes).substr(0, size)), BadMessage);
+  CHECK_THROWS_AS(io::unpack_mesh(bytes + "x"), BadMessage);
   const auto refused = [&](auto&& change) {
     io::CadMesh other = mesh;
     change(other);
-    CHECK_THROWS_AS(io::unpack_mesh(pack(other)), io::BadMessage);
+    CHECK_THROWS_AS(io::unpack_mesh(pack(other)), BadMessage);
   };
   refused([](io::CadMesh& m) { m.triangles[0][1] = 3; });
   refused([](io::CadMesh& m) { m.face_of[0] = 1; });

@@ -73,6 +73,7 @@ std::vector<RunFile> files_read(const Request& request, std::span<const std::str
   files.insert(files.begin(), {"INPUT", request.input});
   add(files, "--config", request.config);
   add(files, "--fit", request.fit);
+  if (request.fill) add(files, "--farfield", request.fill->farfield_file);
   for (const std::string& path : files_named) add(files, "the input's own files", path);
   if (request.inner) add_source_of(files, "--inner", *request.inner);
   if (!request.layers) return files;

@@ -7,10 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "messages.h"
 #include "page/run_pages.h"
 #include "summary/summary.h"
 #include "vdb_offset/cells.h"
 #include "vdb_offset/curve_offset.h"
+#include "vdb_offset/distances.h"
+#include "vdb_offset/fill.h"
+#include "vdb_offset/io/filler.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/io/view_file.h"
 #include "vdb_offset/io/volume_file.h"
@@ -25,7 +29,7 @@ bool is_volume(const std::string& path) {
   return io::volume_format_of(path).has_value() || io::structured_format_of(path).has_value();
 }
 
-/// Layers and their cells. Cells are always measured; over a mesh, they are made only if they are written.
+/// Layers and their cells. Cells are always measured; over a mesh, they are made only if they are written or filled up.
 struct Grown {
   LayersResult layers;
   /// Of what they are layers, if that is the source with opened edges, or corners of curves.
@@ -34,6 +38,7 @@ struct Grown {
   WallNames names;
   std::optional<MeasuredCells> cells;
   VolumeMesh on_curves;
+  std::optional<VolumeMesh> filled;  ///< The layers' cells and those in the rest of the domain.
   LayerReport report;
   std::vector<float> scaled_jacobian;  ///< Of the cells, if a page shows them.
 
@@ -108,9 +113,38 @@ void write_surfaces(const Job& job, const Grown& grown) {
   }
 }
 
+/// Fills the rest of the domain. Where that fails and the layers are to be written anyway, there is a warning.
+void fill(const Job& job, Grown& grown, ProgressBar& bar) {
+  const FillRequest& request = *job.request.fill;
+  const PolygonView mesh = grown.mesh(job.source);
+  FillOptions options{.farfield = request.farfield, .growth = request.growth, .progress = bar.callback()};
+  if (job.source.farfield) options.farfield.surface = *job.source.farfield;
+  if (request.longest)
+    options.longest = request.longest->in_world_units(request.longest->percent ? used_diagonal(mesh) : 0);
+  const auto format = io::volume_format_of(job.request.output);
+  const bool holds_polyhedra = format != io::VolumeFormat::Msh && format != io::VolumeFormat::Su2;
+  options.quads = request.quads.value_or(holds_polyhedra ? FillQuads::Split : FillQuads::Pyramids);
+  const Filler filler = io::netgen_filler({request.seconds, job.request.max_memory, options.progress});
+  const auto start = Clock::now();
+  try {
+    grown.report.fill.emplace();
+    grown.filled = fill_volume(mesh, grown.layers, grown.cells->facts(), grown.names,
+                               std::move(*grown.cells).make(grown.names), options, filler, &*grown.report.fill);
+  } catch (const FillFailed& failed) {
+    grown.report.fill.reset();
+    if (!request.layers_anyway) throw;
+    if (!job.request.quiet) report_problem(fmt::format("warning: {}; only the layers are written", failed.what()));
+    // The cells' measures have gone with those that could not be filled up.
+    grown.cells.emplace(mesh, grown.layers);
+  }
+  grown.layers.statistics.seconds[static_cast<std::size_t>(Stage::Fill)] = seconds_since(start);
+}
+
 void write_volume(const Job& job, Grown& grown) {
-  const io::VolumeWriteResult written = io::write_volume(
-      job.request.output, job.curves() ? std::move(grown.on_curves) : std::move(*grown.cells).make(grown.names));
+  VolumeMesh mesh = job.curves()   ? std::move(grown.on_curves)
+                    : grown.filled ? std::move(*grown.filled)
+                                   : std::move(*grown.cells).make(grown.names);
+  const io::VolumeWriteResult written = io::write_volume(job.request.output, std::move(mesh));
   grown.report.foam = written.foam;
 }
 
@@ -189,9 +223,16 @@ ExitCode run_layers(const Job& job, const Timing& timing, ProgressBar& bar) {
   if (is_volume(request.output)) io::require_volume_writer(request.output);
   require_writable_files(job.files);
   Grown grown;
+  // Not measured: it depends on how much there is to fill.
+  constexpr double kGrowing = 0.3;
+  if (request.fill) bar.expect_work_between(0, kGrowing);
   grow(job, grown);
   LayersResult& layers = grown.layers;
   require_cells(job, grown);
+  if (request.fill) {
+    bar.expect_work_between(kGrowing, 1);
+    fill(job, grown, bar);
+  }
   layers.statistics.seconds[static_cast<std::size_t>(Stage::Read)] = timing.read_seconds;
   const PolygonView mesh = grown.mesh(source);
   OutputFiles outputs(request.sync);

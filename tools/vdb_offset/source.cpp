@@ -173,20 +173,17 @@ Source read_source(const Request& request, bool curves, const ProgressCallback& 
     list_named(*source.file, source);
   }
   if (source.file && !request.quiet) report_remarks(*source.file);
-  for (const std::string& path : request.obstacles) {
-    const io::MeshFile obstacle = io::read_mesh(path, reading_of(path, request));
-    require_same_unit(source, "--obstacle", obstacle);
-    if (!request.quiet) report_remarks(obstacle);
-    list_named(obstacle, source);
-    add(source.obstacles, obstacle.polygons);
-  }
-  if (!request.fit.empty()) {
-    const io::MeshFile to_fit = io::read_mesh(request.fit, reading_of(request.fit, request));
-    require_same_unit(source, "--fit", to_fit);
-    if (!request.quiet) report_remarks(to_fit);
-    list_named(to_fit, source);
-    source.to_fit = to_fit.polygons;
-  }
+  const auto read_beside = [&](const char* option, const std::string& path) {
+    const io::MeshFile beside = io::read_mesh(path, reading_of(path, request));
+    require_same_unit(source, option, beside);
+    if (!request.quiet) report_remarks(beside);
+    list_named(beside, source);
+    return beside.polygons;
+  };
+  for (const std::string& path : request.obstacles) add(source.obstacles, read_beside("--obstacle", path));
+  if (!request.fit.empty()) source.to_fit = read_beside("--fit", request.fit);
+  if (request.fill && !request.fill->farfield_file.empty())
+    source.farfield = read_beside("--farfield", request.fill->farfield_file);
   return source;
 }
 

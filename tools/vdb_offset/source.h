@@ -22,7 +22,8 @@ struct Source {
   std::vector<OpenCurve> closed;         ///< Those of the curves that have been closed (see --close),
   std::optional<Curves> as_closed;       ///< and all of them, if any were.
   Polygons obstacles;                    ///< From the command line; a scene's own are in the scene.
-  std::optional<Polygons> to_fit;        ///< From the command line, as well.
+  std::optional<Polygons> to_fit;        ///< From the command line, as well;
+  std::optional<Polygons> farfield;      ///< and this.
   std::vector<std::string> files_named;  ///< Files that those which were read name, read as well or not.
 
   PolygonView view() const {

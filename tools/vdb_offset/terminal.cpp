@@ -63,6 +63,8 @@ const char* in_words(Stage stage) {
       return "stacking layers";
     case Stage::Measure:
       return "measuring";
+    case Stage::Fill:
+      return "filling";
     case Stage::Write:  // the bar has been told what to call it
       break;
   }

@@ -24,7 +24,7 @@
 
 #include "judge/edge_points.h"
 #include "judge/soup.h"
-#include "messages/progress.h"
+#include "ground/process/progress.h"
 #include "offset/offset_surface.h"
 
 namespace vdb_offset::cad {
@@ -181,11 +181,11 @@ class ProgressOf {
 
   void report(std::ptrdiff_t point) const {
     constexpr std::ptrdiff_t kBetween = 256;
-    if (point % kBetween == 0) io::report_progress(static_cast<double>(point) / static_cast<double>(count_));
+    if (point % kBetween == 0) report_progress(static_cast<double>(point) / static_cast<double>(count_));
   }
 
  private:
-  io::ProgressPart part_;
+  ProgressPart part_;
   std::size_t count_;
 };
 
@@ -209,7 +209,7 @@ class Judge {
     if (is_closed_) check_turned_round();
     if (!verdict_.faults.empty()) return verdict_;
     const Soup source(source_, 0.02 * far_, 0.1 * far_, 0.25), result(result_, 0.01 * far_, 0.02 * far_, 0.3);
-    io::report_progress(kSoups);
+    report_progress(kSoups);
     if (!result.is_complete()) fault("a face has no triangles");
     if (result.triangles().empty()) return verdict_;
     // Valid by its tolerances, a wire may still be open in (u, v): who makes triangles of the face leaves some out.
@@ -227,7 +227,7 @@ class Judge {
     } else if (is_closed_ && asked_.has_one_side()) {
       check_side(source, result);
     }
-    io::report_progress(kCover);
+    report_progress(kCover);
     if (is_closed_) check_turns(result);
     if (crosses(result) && crosses(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2))) fault("the result crosses itself");
     return verdict_;

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "messages/cad_mesh.h"
-#include "messages/packing.h"
+#include "ground/process/message_channel.h"
+#include "ground/process/packing.h"
 
 namespace vdb_offset::io {
 
@@ -31,7 +32,7 @@ enum class CadReply : std::uint32_t {
   InvalidFile = 3,  ///< A text: `expected X, got Y`.
   OutOfMemory = 4,  ///< A text, as before.
   Failed = 5,       ///< A text, as before: the request, and not the file, is at fault.
-  Progress = 6,     ///< A double: the share of the request that is done. Any number of them comes before another reply.
+  Progress = kProgressMessage,  ///< A double: the share of the request that is done. Any number of them comes before another reply.
 };
 
 /// The file to be read, and how.

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "messages/progress.h"
+#include "ground/process/progress.h"
 #include "offset/arrange.h"
 #include "offset/build.h"
 
@@ -76,7 +76,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
         continue;
       }
       for (std::size_t f = 0; f < model.faces.size(); f++) {
-        io::report_progress(static_cast<double>(result.faces.size()) / all_faces);
+        report_progress(static_cast<double>(result.faces.size()) / all_faces);
         ModelFace& face = model.faces[f];
         face.distance.constant = face.sign * request.distance;
         if (!request.of_face.empty()) face.distance = towards(request.of_face[first_face + f], face.sign);

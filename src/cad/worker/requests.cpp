@@ -5,9 +5,9 @@
 #include <cmath>
 #include <new>
 
-#include "messages/progress.h"
+#include "ground/process/progress.h"
 #include "tessellate/tessellate.h"
-#include "worker/memory_limit.h"
+#include "ground/process/memory_limit.h"
 #include "write/write_offset.h"
 
 namespace vdb_offset::cad {
@@ -48,9 +48,9 @@ std::string Requests::mesh(const io::ReadCad& read) {
   constexpr double kRead = 0.4, kTessellated = 0.95;
   limit_memory(read.most_memory);
   model_ = read_within_memory(read);
-  io::report_progress(kRead);
+  report_progress(kRead);
   const io::CadMesh mesh = tessellate_within_memory(*model_, read.fineness);
-  io::report_progress(kTessellated);
+  report_progress(kTessellated);
   surfaces_.clear();
   for (const Body& body : model_->bodies)
     for (const BodyFace& face : body.faces) surfaces_.push_back({FaceSurface(face.face), 1});
@@ -65,7 +65,7 @@ std::string Requests::mesh(const io::ReadCad& read) {
 }
 
 std::string Requests::distances(std::string_view payload) const {
-  io::Unpacker unpacker(payload);
+  Unpacker unpacker(payload);
   const auto points = unpacker.list<io::CadPoint>();
   unpacker.end();
   std::vector<double> errors;
@@ -77,36 +77,36 @@ std::string Requests::distances(std::string_view payload) const {
     const Foot foot = surfaces_[at.face].surface.foot(gp_Pnt(at.x, at.y, at.z), at.u, at.v);
     errors.push_back(std::abs(std::abs(foot.distance) - std::abs(at.distance)));
   }
-  io::Packer packer;
+  Packer packer;
   packer.list(errors);
   return packer.take();
 }
 
 std::string Requests::offset(std::string_view payload) const {
-  io::Unpacker unpacker(payload);
+  Unpacker unpacker(payload);
   const auto aims = unpacker.list<io::CadAim>();
   const auto places = unpacker.list<io::CadPlace>();
   unpacker.end();
   std::uint64_t count = 0;
   for (const io::CadAim& aim : aims)
     if ((count += aim.places) > places.size() || aim.places > places.size())
-      throw io::BadMessage("expected a place for each face of a point, got fewer");
+      throw BadMessage("expected a place for each face of a point, got fewer");
   for (const io::CadPlace& place : places)
     if (place.face >= surfaces_.size())
       throw InvalidCad("expected points of " + std::to_string(surfaces_.size()) + " faces, got one of face " +
                        std::to_string(place.face + 1));
-  io::Packer packer;
+  Packer packer;
   packer.list(offset_points(surfaces_, aims, places));
   return packer.take();
 }
 
 std::string Requests::answer(io::CadRequest kind, std::string_view payload) {
   if (kind == io::CadRequest::Mesh) return mesh(io::unpack_read(payload));
-  if (!model_) throw io::BadMessage("expected a model first, got another request");
+  if (!model_) throw BadMessage("expected a model first, got another request");
   if (kind == io::CadRequest::Distances) return distances(payload);
   if (kind == io::CadRequest::Offset) return offset(payload);
   if (kind == io::CadRequest::Write) return io::pack(write_offset(*model_, io::unpack_write(payload)));
-  throw io::BadMessage("expected a request that is known, got number " +
+  throw BadMessage("expected a request that is known, got number " +
                        std::to_string(static_cast<std::uint32_t>(kind)));
 }
 

@@ -15,7 +15,7 @@ namespace vdb_offset::cad {
 /// The model that requests are about.
 class Requests {
  public:
-  /// What a request asks for. \throw InvalidCad, io::BadMessage and whatever OpenCASCADE throws
+  /// What a request asks for. \throw InvalidCad, BadMessage and whatever OpenCASCADE throws
   std::string answer(io::CadRequest kind, std::string_view payload);
 
  private:

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "hold/hold_back.h"
-#include "messages/progress.h"
+#include "ground/process/progress.h"
 #include "vdb_offset/run.h"
 #include "write/face_distances.h"
 
@@ -56,7 +56,7 @@ class BodiesMaker {
   void make_bodies() {
     const auto count = static_cast<double>(bodies_.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const io::ProgressPart part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
+      const ProgressPart part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
       OffsetBody& each = bodies_[i];
       OffsetCadRequest request;
       request.keeps_turned = keeps_turned_ && each.body.is_solid;
@@ -100,7 +100,7 @@ class BodiesMaker {
       }
       {  // nobody knows how many rounds there will be: each is shown as half of what is left
         const double left = std::pow(0.5, round);
-        const io::ProgressPart part(1 - left, 1 - left / 2);
+        const ProgressPart part(1 - left, 1 - left / 2);
         make_bodies();
       }
       if (!hold.add(crossing_faces())) break;

@@ -15,7 +15,7 @@
 #include "judge/judge.h"
 #include "judge/parameters.h"
 #include "judge/soup.h"
-#include "messages/progress.h"
+#include "ground/process/progress.h"
 #include "offset/offset_solid.h"
 #include "trim/trim_offset.h"
 #include "write/assemblies.h"
@@ -88,7 +88,7 @@ class OffsetWriter {
   double largest() const { return millimetres_ * std::abs(write_.distance); }
 
   void make(bool keeps_turned) {
-    const io::ProgressPart part(0, kMade);
+    const ProgressPart part(0, kMade);
     OffsetBodies made = offset_bodies(model_, write_, millimetres_, keeps_turned);
     written_.held = made.held;
     written_.least_held = made.least_held;
@@ -159,9 +159,9 @@ class OffsetWriter {
     }
     written_.least = INFINITY;
     written_.samples = 0;
-    const io::ProgressPart part(kReadAgain, 1);
+    const ProgressPart part(kReadAgain, 1);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      io::report_progress(static_cast<double>(i) / static_cast<double>(bodies_.size()));
+      report_progress(static_cast<double>(i) / static_cast<double>(bodies_.size()));
       if (!is_good(bodies_[i], again.bodies[i], in_millimetres(again))) return false;
     }
     if (bodies_.size() > 1 && get_into_each_other(again)) {
@@ -406,7 +406,7 @@ io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write) {
     if (attempt == Attempt::Rest && rest) return std::move(*rest);
     if (write.held && (is_trial(attempt) || attempt == Attempt::Rest)) continue;
     std::string gap;
-    const io::ProgressPart part(shown, shown_until(attempt));
+    const ProgressPart part(shown, shown_until(attempt));
     shown = shown_until(attempt);
     auto written =
         in_own_process([&] { return OffsetWriter(model, write).run(attempt); }, seconds_for(attempt, write), gap);

@@ -23,7 +23,7 @@
 #include <utility>
 
 #include "bytes/open_module.h"
-#include "cad/worker_process.h"
+#include "ground/process/worker_process.h"
 #include "vdb_offset/api.h"
 #include "vdb_offset/run.h"
 
@@ -121,7 +121,7 @@ struct CadWorker::State {
   void start(const OpenFile& file, const Deadline& until) {
     Message first;
     try {
-      process.emplace(worker_program(kWorkerName), file);
+      process.emplace(worker_program(kWorkerName), &file);
       first = process->messages().receive(until, kMostOfReply);
     } catch (const std::system_error& error) {
       fail_to_start(path, error.what());

@@ -360,6 +360,7 @@ void complete(Draft& draft) {
     request.tolerance->tolerance.ridges_only = true;
   }
   if (has("--layers") || has("--heights")) request.layers = draft.layers;
+  if (draft.fills) request.fill = draft.fill;
   if (draft.no_sync) request.sync = OutputFiles::Sync::No;
   constexpr std::size_t kParts = 5, kPartsTaken = 4;  // four fifths of the free memory, as --help says
   if (request.max_memory == 0) request.max_memory = std::max<std::size_t>(1, available_memory() / kParts * kPartsTaken);
@@ -387,6 +388,7 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_cad(line, draft.request);
   declare_cad_output(line, draft.request);
   declare_products(line, draft);
+  declare_fill(line, draft);
   declare_method(line, draft);
   declare_files(line, draft);
   declare_run(line, draft);

@@ -27,6 +27,8 @@ struct Draft {
   bool no_sync = false;
   IsoRequest iso;
   LayersRequest layers;
+  bool fills = false;
+  FillRequest fill;
   ToleranceRequest tolerance;
   std::string distance_xy, distance_z;
 };
@@ -34,6 +36,9 @@ struct Draft {
 /// Sets of options that say the same thing in other ways, as how far the offset goes. What the command line has of a
 /// set stands in the place of all that a file or a preset has of it.
 std::vector<std::vector<std::string>> alternative_options();
+
+/// Declares the options that say how the rest of the domain is filled (fill_options.cpp).
+void declare_fill(CommandLine& line, Draft& draft);
 
 /// Declares all options of an offset. \pre the draft lives as long as the command line
 void declare_offset_options(CommandLine& line, Draft& draft);

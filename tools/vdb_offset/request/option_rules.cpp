@@ -79,6 +79,11 @@ void require_for_mesh(const Request& request) {
   const bool volume =
       io::volume_format_of(request.output).has_value() || io::structured_format_of(request.output).has_value();
   // A .vtu is a mesh of cells with --layers, and one of faces without.
+  require(!request.fill || io::volume_format_of(request.output),
+          request.output + ": expected .vtu, .msh, .cgns, .su2 or a folder named polyMesh with --fill");
+  require(!request.fill || request.fill->farfield_file.empty() || format_of(request.fill->farfield_file, request),
+          fmt::format("--farfield: expected 'sphere:20L', 'box:10L' or a mesh that ends in {}, got '{}'", kMeshEndings,
+                      request.fill ? request.fill->farfield_file : ""));
   require(!volume || request.layers || format_of(request.output, request),
           request.output + ": not a mesh format. Use .obj, .ply, .stl ..., or --layers for cells");
   require_structured(request);
@@ -157,7 +162,11 @@ void require_together(const GivenNames& given) {
       {{"--first-height", "--total-thickness", "--growth"}, Excludes, {"--heights"}},
       {{"--first-height", "--total-thickness", "--growth"}, NeedsAnyOf, {"--layers"}},
       {{"--structured", "--fan-angle"}, NeedsAnyOf, {"--layers", "--heights"}},
-      {{"--structured"}, Excludes, {"--fan-angle"}},
+      {{"--structured"}, Excludes, {"--fan-angle", "--fill"}},
+      {{"--fill"}, NeedsAnyOf, {"--layers", "--heights"}},
+      {{"--farfield", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds", "--layers-anyway"},
+       NeedsAnyOf,
+       {"--fill"}},
       {{"--layers"}, NeedsOneOf, {"--first-height", "--total-thickness", "--heights"}},
       {{"--max-faces", "--refined-source", "--map", "--strict-certified"},
        NeedsAnyOf,
@@ -207,7 +216,7 @@ void require_options_for(const Request& request, bool curves, const char* meshes
   const char* of_meshes =
       first_given(request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle", "--shell", "--mode iso",
                             "--tolerance", "--corners arc", "--orient fix-direction-only", "--orient fix-cavities",
-                            "--deflection", "--fit", "--taper"});
+                            "--deflection", "--fit", "--taper", "--fill"});
   if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";
   if (of_meshes && curves)
     throw UsageError(fmt::format("{}: expected {}, as this is not for curves", of_meshes, meshes));

@@ -228,6 +228,8 @@ GivenDistance parse_blend(const std::string& text) { return parse_fineness("--bl
 
 GivenDistance parse_deflection(const std::string& text) { return parse_fineness("--deflection", text); }
 
+GivenDistance parse_fill_max(const std::string& text) { return parse_fineness("--fill-max", text); }
+
 WeldOptions parse_weld(const std::string& text) {
   WeldOptions weld;
   if (text == "auto") return WeldOptions::automatic();

@@ -68,6 +68,8 @@ std::pair<Metric, double> settle_axes(const AxisDistances& axes, PolygonView mes
 
 /// --deflection: a length above 0, or a percentage.
 GivenDistance parse_deflection(const std::string& text);
+/// --fill-max: a length above 0, or a percentage.
+GivenDistance parse_fill_max(const std::string& text);
 /// --blend: a length above 0, or a percentage.
 GivenDistance parse_blend(const std::string& text);
 /// group=NAME, material=NAME, faces=FILE, and of CAD models face=N, name=NAME or color=RRGGBB.

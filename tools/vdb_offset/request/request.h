@@ -9,6 +9,7 @@
 
 #include "request/units.h"
 #include "vdb_offset/distances.h"
+#include "vdb_offset/fill.h"
 #include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/offset.h"
@@ -62,6 +63,18 @@ struct LayersRequest {
   bool structured = false;                      ///< The mesh is a grid of quads, and so are the layers.
 };
 
+/// Tetrahedra in the rest of the domain that layers begin.
+struct FillRequest {
+  Farfield farfield;          ///< Without the surface of a file.
+  std::string farfield_text;  ///< As given; empty: it was not.
+  std::string farfield_file;  ///< The file of its surface; empty: none.
+  double growth = 1.3;
+  std::optional<GivenDistance> longest;
+  std::optional<FillQuads> quads;  ///< None: as OUTPUT can hold.
+  double seconds = 3600;
+  bool layers_anyway = false;  ///< Where the rest cannot be filled, write the layers alone.
+};
+
 /// The iso-surface at the distance, asked for with --mode iso.
 struct IsoRequest {
   std::optional<double> adaptivity;
@@ -93,6 +106,7 @@ struct Request {
   std::string fit;                             ///< Another mesh that INPUT is to keep the clearance from; empty: none.
   bool shell = false;
   std::optional<LayersRequest> layers;
+  std::optional<FillRequest> fill;
   std::optional<IsoRequest> iso;
   std::optional<ToleranceRequest> tolerance;
 

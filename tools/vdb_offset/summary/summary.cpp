@@ -295,6 +295,24 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
   summary_of(job, outcome, made).print(out, total_seconds, job.request.verbose);
 }
 
+namespace {
+
+void add_fill(const FillReport& fill, Summary& made) {
+  made.verdict += fmt::format("; the rest filled with {} tetrahedra{}; their scaled Jacobian: least {:.3g}, 1 % below {:.3g}",
+                              fill.tetrahedra,
+                              fill.pyramids > 0 ? fmt::format(" and {} pyramids", fill.pyramids) : "",
+                              fill.scaled_jacobian.least, fill.scaled_jacobian.quantile_01);
+  // OpenFOAM warns of interpolation weights below 0.05, which a jump of about 20 makes.
+  constexpr double kMostJump = 20;
+  if (fill.jump.quantile_95 > kMostJump)
+    made.remarks.add(Gravity::Off,
+                     fmt::format("from the last layer to the tetrahedra, volumes change {:.3g} times on average, and {:.3g} "
+                                 "times at 5 % of the faces. Use more layers, which grow until they are as high as wide",
+                                 fill.jump.median, fill.jump.quantile_95));
+}
+
+}  // namespace
+
 Summary summary_of(const Job& job, const LayersResult& result, const LayerReport& report) {
   const OffsetStatistics& statistics = result.statistics;
   const LayerFigures& all = report.all;
@@ -308,6 +326,7 @@ Summary summary_of(const Job& job, const LayersResult& result, const LayerReport
       all.fan_cells > 0 ? fmt::format(", {} of them in fans over sharp edges", all.fan_cells) : "",
       all.scaled_jacobian.least, all.scaled_jacobian.median);
   Remarks& remarks = made.remarks;
+  if (report.fill) add_fill(*report.fill, made);
   if (report.inverted_block_cells > 0)
     remarks.add(Gravity::Wrong, fmt::format("{} cells of the block are collapsed or inverted, as where layers end",
                                             report.inverted_block_cells));

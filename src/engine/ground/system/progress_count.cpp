@@ -10,7 +10,7 @@ namespace vdb_offset {
 
 const char* name(Stage stage) {
   constexpr const char* kNames[kStageCount] = {"read",  "rasterise", "sweep",  "gradient", "propagate", "capture",
-                                               "limit", "refine",    "layers", "measure",  "write"};
+                                               "limit", "refine",    "layers", "measure",  "fill",      "write"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 

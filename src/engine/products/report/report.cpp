@@ -267,6 +267,16 @@ Json layers_json(const LayerReport& layers) {
                      {"split_points", layers.split_points},
                      {"turned_faces", layers.turned_faces}};
   report["inverted_block_cells"] = layers.inverted_block_cells;
+  if (layers.fill)
+    report["fill"] = {{"tetrahedra", layers.fill->tetrahedra},
+                      {"pyramids", layers.fill->pyramids},
+                      {"split_cells", layers.fill->split_cells},
+                      {"added_points", layers.fill->added_points},
+                      {"front_triangles", layers.fill->front},
+                      {"volume", layers.fill->volume},
+                      {"scaled_jacobian", spread_json(layers.fill->scaled_jacobian)},
+                      {"volume_jump", spread_json(layers.fill->jump)},
+                      {"seconds", layers.fill->seconds}};
   if (layers.foam)
     report["openfoam"] = {{"wrong_faces", layers.foam->wrong_faces},
                           {"non_orthogonality", layers.foam->non_orthogonality},

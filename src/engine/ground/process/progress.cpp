@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "messages/progress.h"
+#include "ground/process/progress.h"
 
 #include <sys/socket.h>
 
-#include "messages/cad_messages.h"
-#include "messages/message_channel.h"
+#include "ground/process/message_channel.h"
+#include "ground/process/packing.h"
 
-namespace vdb_offset::io {
+namespace vdb_offset {
 namespace {
 
 int progress_socket = -1;
@@ -23,7 +23,7 @@ void report_progress(double share) {
   Packer packer;
   packer.value(in_request(share));
   // In one piece: a process that has a time limit may be ended after any call.
-  const std::string message = MessageChannel::framed(static_cast<std::uint32_t>(CadReply::Progress), packer.take());
+  const std::string message = MessageChannel::framed(kProgressMessage, packer.take());
   [[maybe_unused]] const auto sent =
       ::send(progress_socket, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
@@ -39,4 +39,4 @@ ProgressPart::~ProgressPart() {
   part_to = to_before_;
 }
 
-}  // namespace vdb_offset::io
+}  // namespace vdb_offset

@@ -7,11 +7,11 @@
 #include <string>
 #include <string_view>
 
-namespace vdb_offset::io {
+namespace vdb_offset {
 
 /// Descriptors that the worker starts with, beside the three that every program has, which are those of /dev/null.
 inline constexpr int kWorkerMessages = 3;  ///< A socket: messages.
-inline constexpr int kWorkerModel = 4;     ///< The file's bytes.
+inline constexpr int kWorkerModel = 4;     ///< The bytes of a file, if there is one.
 inline constexpr int kWorkerEnd = 5;  ///< A socket: how it ended, an int as of waitpid(); it ends when this closes.
 
 /// A file descriptor that is closed at the end.
@@ -38,6 +38,9 @@ using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 struct TooLate {};
 /// The other end is gone.
 struct Hangup {};
+
+/// The kind of a message that says how much of a request is done, a double. Other kinds are the programs' own.
+inline constexpr std::uint32_t kProgressMessage = 6;
 
 struct Message {
   std::uint32_t kind = 0;
@@ -68,4 +71,4 @@ class MessageChannel {
   OpenFile socket_;
 };
 
-}  // namespace vdb_offset::io
+}  // namespace vdb_offset

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cad/worker_process.h"
+#include "ground/process/worker_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-namespace vdb_offset::io {
+namespace vdb_offset {
 namespace {
 
 void require_no(int error, const char* what) {
@@ -57,18 +57,18 @@ void set_attributes(posix_spawnattr_t& attributes) {
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
 }
 
-pid_t spawn(const std::string& program, int messages, int model, int end) {
+pid_t spawn(const std::string& program, int messages, const OpenFile* model, int end) {
   const SpawnActions files;
   auto* const list = const_cast<posix_spawn_file_actions_t*>(&files.list);
   posix_spawn_file_actions_addopen(list, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(list, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(list, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(list, messages, kWorkerMessages);
-  posix_spawn_file_actions_adddup2(list, model, kWorkerModel);
+  if (model) posix_spawn_file_actions_adddup2(list, model->number(), kWorkerModel);
   posix_spawn_file_actions_adddup2(list, end, kWorkerEnd);
   SpawnAttributes attributes;
   set_attributes(attributes.list);
-  std::string name = "vdb_offset_cad";
+  std::string name = program.substr(program.rfind('/') + 1);
   char* const words[] = {name.data(), nullptr};
   pid_t process = -1;
   require_no(posix_spawn(&process, program.c_str(), list, &attributes.list, words, environ), program.c_str());
@@ -77,15 +77,15 @@ pid_t spawn(const std::string& program, int messages, int model, int end) {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(const std::string& program, const OpenFile& model) {
+WorkerProcess::WorkerProcess(const std::string& program, const OpenFile* model) {
   auto [messages, messages_of_worker] = make_sockets();
   auto [end, end_of_worker] = make_sockets();
   const OpenFile its_messages = beyond_the_workers(messages_of_worker.number());
-  const OpenFile its_model = beyond_the_workers(model.number());
+  const OpenFile its_model = model ? beyond_the_workers(model->number()) : OpenFile();
   const OpenFile its_end = beyond_the_workers(end_of_worker.number());
   messages_ = MessageChannel(std::move(messages));
   end_ = std::move(end);
-  process_ = spawn(program, its_messages.number(), its_model.number(), its_end.number());
+  process_ = spawn(program, its_messages.number(), model ? &its_model : nullptr, its_end.number());
 }
 
 WorkerProcess::~WorkerProcess() {
@@ -106,4 +106,4 @@ std::optional<int> WorkerProcess::how_it_ended() {
   return status;
 }
 
-}  // namespace vdb_offset::io
+}  // namespace vdb_offset

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "worker/guard.h"
+#include "ground/process/guard.h"
 
 #include <poll.h>
 #include <sys/prctl.h>
@@ -11,23 +11,23 @@
 #include <cerrno>
 #include <csignal>
 
-#include "messages/message_channel.h"
+#include "ground/process/message_channel.h"
 
-namespace vdb_offset::cad {
+namespace vdb_offset {
 namespace {
 
 /// Waits for the worker's end, which closes `alive`, and reports it; or for that of the program, and ends the worker.
 [[noreturn]] void guard(pid_t worker, int alive) {
-  ::close(io::kWorkerMessages);
-  ::close(io::kWorkerModel);
-  pollfd watched[] = {{alive, POLLIN, 0}, {io::kWorkerEnd, POLLRDHUP, 0}};
+  ::close(kWorkerMessages);
+  ::close(kWorkerModel);
+  pollfd watched[] = {{alive, POLLIN, 0}, {kWorkerEnd, POLLRDHUP, 0}};
   while (::poll(watched, 2, -1) < 0 && errno == EINTR) {
   }
   if (watched[0].revents == 0) ::kill(worker, SIGKILL);
   int status = 0;
   while (::waitpid(worker, &status, 0) < 0)
     if (errno != EINTR) ::_exit(1);
-  ::send(io::kWorkerEnd, &status, sizeof(status), MSG_NOSIGNAL);
+  ::send(kWorkerEnd, &status, sizeof(status), MSG_NOSIGNAL);
   ::_exit(0);
 }
 
@@ -46,7 +46,7 @@ void start_guard() {
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::close(alive[0]);
-  ::close(io::kWorkerEnd);
+  ::close(kWorkerEnd);
 }
 
-}  // namespace vdb_offset::cad
+}  // namespace vdb_offset

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace vdb_offset::cad {
+namespace vdb_offset {
 
 /// Lets this process have so many more bytes of addresses; 0: any number. Under the address sanitizer, which has
 /// terabytes of them, as many as it likes.
@@ -16,4 +16,4 @@ bool is_memory_short();
 /// broken.
 bool is_memory_used_up(std::uint64_t more);
 
-}  // namespace vdb_offset::cad
+}  // namespace vdb_offset

@@ -6,16 +6,17 @@
 #include <optional>
 #include <string>
 
-#include "messages/message_channel.h"
+#include "ground/process/message_channel.h"
 
-namespace vdb_offset::io {
+namespace vdb_offset {
 
-/// A worker, vdb_offset_cad, in a process of its own. Nothing of this process is changed for it: neither how signals
+/// A worker, as vdb_offset_cad, in a process of its own. Nothing of this process is changed for it: neither how signals
 /// are dealt with nor which children it may wait for.
 class WorkerProcess {
  public:
+  /// \param model a file for it to read; null: none
   /// \throw std::system_error if there is no such program, or the system has no more processes
-  WorkerProcess(const std::string& program, const OpenFile& model);
+  WorkerProcess(const std::string& program, const OpenFile* model);
   /// Ends it.
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
@@ -31,4 +32,4 @@ class WorkerProcess {
   pid_t process_ = -1;
 };
 
-}  // namespace vdb_offset::io
+}  // namespace vdb_offset

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace vdb_offset::io {
+namespace vdb_offset {
 
 /// A message that is not what it ought to be.
 struct BadMessage : std::runtime_error {
@@ -86,4 +86,4 @@ class Unpacker {
   std::string_view rest_;
 };
 
-}  // namespace vdb_offset::io
+}  // namespace vdb_offset

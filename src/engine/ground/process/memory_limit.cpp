@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "worker/memory_limit.h"
+#include "ground/process/memory_limit.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-namespace vdb_offset::cad {
+namespace vdb_offset {
 namespace {
 
 // What has to be left for the limit not to have been met: the largest pieces that OpenCASCADE asks for by habit; and
@@ -56,4 +56,4 @@ bool is_memory_short() {
   return piece == nullptr;
 }
 
-}  // namespace vdb_offset::cad
+}  // namespace vdb_offset

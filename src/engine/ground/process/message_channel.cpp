@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "messages/message_channel.h"
+#include "ground/process/message_channel.h"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -10,9 +10,9 @@
 #include <limits>
 #include <utility>
 
-#include "messages/packing.h"
+#include "ground/process/packing.h"
 
-namespace vdb_offset::io {
+namespace vdb_offset {
 namespace {
 
 constexpr std::uint64_t kStart = 0x6461632d6f626476;  // of every message
@@ -111,4 +111,4 @@ Message MessageChannel::receive(const Deadline& deadline, std::uint64_t most) {
   return message;
 }
 
-}  // namespace vdb_offset::io
+}  // namespace vdb_offset

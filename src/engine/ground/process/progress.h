@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace vdb_offset::io {
+namespace vdb_offset {
 
 /// From here on, progress is reported through this socket; before, it is not.
 void report_progress_to(int socket);
@@ -22,4 +22,4 @@ class ProgressPart {
   double from_before_, to_before_;
 };
 
-}  // namespace vdb_offset::io
+}  // namespace vdb_offset

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "products/fill/front.h"
+
+namespace vdb_offset {
+
+/// Pairs of triangles that meet elsewhere than in points and edges that they share, by their indices.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings_of(std::span<const Vec3d> points,
+                                                                  std::span<const FrontTriangle> front);
+
+/// Edges of the front without a second triangle that runs the other way, or with more than two triangles: of each the
+/// ends. Sorted.
+std::vector<std::array<std::uint32_t, 2>> unpaired_edges(std::span<const FrontTriangle> front);
+
+/// Six times the signed volume inside of the front: above 0 where its triangles are ccw seen from outside of it.
+double six_volumes_inside(std::span<const Vec3d> points, std::span<const FrontTriangle> front);
+
+/// Whether the front encloses what is to be filled: the one of its shells with the largest volume does. Else that is
+/// around all of it.
+bool is_enclosed(std::span<const Vec3d> points, std::span<const FrontTriangle> front);
+
+/// \throw FillFailed for the first two triangles that cross, with their place
+void require_no_crossing(std::span<const Vec3d> points, std::span<const FrontTriangle> front);
+
+}  // namespace vdb_offset

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// What layers leave open is bounded by their outermost faces, by faces of the wall that carry no cells, and, where only a
+// part of the wall carries layers, by the sides of these. All of them become triangles of the volume mesh's points that
+// run counter-clockwise seen from outside of what is left. Where a face of a cell has more than three corners, either a
+// pyramid is put on it, whose own sides are in the front then, or the face itself is parted, with the cell behind it.
+#include "products/fill/front.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "ground/mesh/triangulate.h"
+#include "products/fill/check_front.h"
+#include "products/fill/put_pyramids.h"
+#include "products/volume/cell_faces.h"
+
+namespace vdb_offset {
+namespace {
+
+using Index = std::uint32_t;
+
+/// The points of a wall by their positions, and those that are added to a mesh where there is none yet.
+class WallPoints {
+ public:
+  WallPoints(const LayersResult& layers, VolumeMesh& volume) : layers_(layers), volume_(volume) {
+    for (Index p = 0; p < volume.points.size(); ++p)
+      if (volume.point_fields[0].values[p] == 0) known_.try_emplace(key(volume.points[p]), p);
+  }
+
+  Index of(Index vertex) {
+    const Index first = layers_.welded_to.empty() ? vertex : layers_.welded_to[vertex];
+    const Vec3d position = layers_.stacks.of(first == kNone ? vertex : first)[0];
+    const auto [found, is_new] = known_.try_emplace(key(position), static_cast<Index>(volume_.points.size()));
+    if (is_new) {
+      volume_.points.push_back(position);
+      for (VolumeField& field : volume_.point_fields) field.values.push_back(0);
+    }
+    return found->second;
+  }
+
+ private:
+  using Key = std::array<double, 3>;
+  static Key key(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+
+  const LayersResult& layers_;
+  VolumeMesh& volume_;
+  std::map<Key, Index> known_;
+};
+
+/// The triangles of a face that is parted. Of a quad, those beside its shorter diagonal: they are the rounder ones, and
+/// tetrahedra on them as well.
+std::vector<std::array<Index, 3>> parts_of(const std::vector<Vec3d>& points, std::span<const Index> face) {
+  std::vector<std::array<Index, 3>> parts;
+  if (face.size() != 4) {
+    triangulate(points, face, parts);
+    return parts;
+  }
+  const auto diagonal = [&](std::size_t k) { return (points[face[k]] - points[face[k + 2]]).lengthSqr(); };
+  const auto along = [&](std::size_t k) {
+    const Vec3d &a = points[face[k]], &b = points[face[k + 1]], &c = points[face[k + 2]], &d = points[face[(k + 3) % 4]];
+    return (b - a).cross(c - a).dot((c - a).cross(d - a)) > 0;
+  };
+  const std::size_t k = diagonal(1) < diagonal(0) && along(1) ? 1 : along(0) ? 0 : 1;
+  return {{face[k], face[k + 1], face[k + 2]}, {face[k], face[k + 2], face[(k + 3) % 4]}};
+}
+
+class FrontTaker {
+ public:
+  FrontTaker(FillQuads quads, VolumeMesh& volume) : quads_(quads), volume_(volume) {}
+
+  /// Takes all faces of a patch, which then has none.
+  void take(BoundaryPatch& patch) {
+    for (std::size_t f = 0; f < patch.face_count(); ++f) take(patch.face(f), patch.cell[f]);
+    patch.corners.clear();
+    patch.face_begin = {0};
+    patch.cell.clear();
+  }
+
+  /// Takes faces of the wall without cells, whose normals point to what is left if they are not `turned`.
+  void take_bare(PolygonView mesh, bool turned, const LayersResult& layers, const LayerCellFacts& facts,
+                 const WallNames& names) {
+    std::optional<WallPoints> points;
+    std::vector<std::array<Index, 3>> triangles;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      if (facts.role[f] != FaceRole::Bare && facts.role[f] != FaceRole::Flat) continue;
+      if (!points) points.emplace(layers, volume_);
+      triangles.clear();
+      append_triangles(mesh, f, triangles);
+      for (const auto& [a, b, c] : triangles) {
+        std::array<Index, 3> corners = {points->of(a), points->of(c), points->of(b)};
+        if (turned) std::swap(corners[1], corners[2]);
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+        front_.triangles.push_back({corners, kNone, names.of_face.empty() ? 0 : names.of_face[f]});
+      }
+    }
+  }
+
+  void put_pyramids() {
+    if (!quads_on_.empty()) put_pyramids_on(quads_on_, front_, volume_);
+  }
+
+  const std::vector<FrontTriangle>& triangles() const { return front_.triangles; }
+  Front result() { return std::move(front_); }
+
+ private:
+  void take(std::span<const Index> face, Index cell) {
+    if (face.size() == 3) return add(face[0], face[1], face[2], cell);
+    if (face.size() == 4 && quads_ == FillQuads::Pyramids) {
+      quads_on_.push_back({{face[0], face[1], face[2], face[3]}, static_cast<Index>(front_.triangles.size())});
+      // Stand for the pyramid until all of the front is known.
+      add(face[0], face[1], face[2], cell), add(face[0], face[2], face[3], cell);
+      return;
+    }
+    PartedFace parted{cell, {face.begin(), face.end()}, parts_of(volume_.points, face)};
+    for (const auto& [a, b, c] : parted.triangles) add(a, b, c, cell);
+    front_.parted.push_back(std::move(parted));
+  }
+
+  /// Adds a triangle of the layers' boundary: seen from what is left, it runs the other way round.
+  void add(Index a, Index b, Index c, Index cell) { front_.triangles.push_back({{a, c, b}, cell, kNone}); }
+
+  FillQuads quads_;
+  VolumeMesh& volume_;
+  Front front_;
+  std::vector<QuadOfFront> quads_on_;
+};
+
+[[noreturn]] void fail_by_openings(const VolumeMesh& volume, std::span<const std::array<Index, 2>> open) {
+  const Vec3d middle = (volume.points[open[0][0]] + volume.points[open[0][1]]) / 2;
+  throw InvalidInput(
+      fmt::format("fill: expected a closed surface, got one with {} open edges, the first at ({:.6g}, {:.6g}, {:.6g}) "
+                  "(close its openings first)",
+                  open.size(), middle[0], middle[1], middle[2]));
+}
+
+}  // namespace
+
+Front take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const WallNames& names,
+                 FillQuads quads, VolumeMesh& volume) {
+  FrontTaker taker(quads, volume);
+  for (BoundaryPatch& patch : volume.patches)
+    if (patch.kind == BoundaryPatch::Kind::Outer) taker.take(patch);
+  taker.take_bare(mesh, layers.heights.back().farthest() < 0, layers, facts, names);
+  if (auto open = unpaired_edges(taker.triangles()); !open.empty()) {
+    for (BoundaryPatch& patch : volume.patches)
+      if (patch.kind == BoundaryPatch::Kind::Side) taker.take(patch);
+    open = unpaired_edges(taker.triangles());
+    if (!open.empty()) fail_by_openings(volume, open);
+  }
+  taker.put_pyramids();
+  std::erase_if(volume.patches, [](const BoundaryPatch& patch) {
+    return patch.kind != BoundaryPatch::Kind::Wall && patch.face_count() == 0;
+  });
+  return taker.result();
+}
+
+void part_cells(const std::vector<PartedFace>& parted, VolumeMesh& volume) {
+  if (parted.empty()) return;
+  std::multimap<Index, const PartedFace*> of_cell;
+  for (const PartedFace& face : parted) of_cell.emplace(face.cell, &face);
+  std::vector<Index> corners;
+  std::vector<std::uint64_t> begin{0};
+  corners.reserve(volume.corners.size() + 30 * parted.size());
+  begin.reserve(volume.cell_begin.size());
+  for (std::size_t c = 0; c < volume.cell_count(); ++c) {
+    const auto cell = volume.cell(c);
+    const auto [first, last] = of_cell.equal_range(static_cast<Index>(c));
+    if (first == last) {
+      corners.insert(corners.end(), cell.begin(), cell.end());
+    } else {
+      const std::size_t at = corners.size();
+      corners.push_back(0);
+      const auto add = [&](std::span<const Index> face) {
+        ++corners[at];
+        corners.push_back(static_cast<Index>(face.size()));
+        corners.insert(corners.end(), face.begin(), face.end());
+      };
+      for_each_cell_face(volume.cell_types[c], cell, [&](std::span<const Index> face) {
+        const auto is_it = [&](const auto& entry) {
+          return std::ranges::is_permutation(face, entry.second->corners);
+        };
+        const auto found = std::find_if(first, last, is_it);
+        if (found == last) return add(face);
+        for (const auto& triangle : found->second->triangles) add(triangle);
+      });
+      volume.cell_types[c] = CellType::Polyhedron;
+    }
+    begin.push_back(corners.size());
+  }
+  volume.corners = std::move(corners);
+  volume.cell_begin = std::move(begin);
+}
+
+}  // namespace vdb_offset
