@@ -22,6 +22,7 @@ namespace vdb_offset {
 struct FillDomain {
   std::vector<Vec3d> points;                            ///< World units, relative to a point in the middle.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Ccw seen from outside of the domain.
+  std::vector<Vec3d> outside;                           ///< Points beyond some of its shells, as in holes of it.
   double growth = 1.3;                                  ///< How many times as long as its neighbours an edge may be.
   double longest = 0;                                   ///< No edge is to be longer; world units.
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program that fills volumes by Netgen. Programs of the project start it, hand it one domain and get its cells
-// (messages/fill_messages.h); by hand it is of no use.
+// The program that fills volumes by Netgen, or by TetGen. Programs of the project start it, hand it one domain and get its cells
+// (messages/fill_messages.h); by hand
+// it is of no use.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 #include "ground/process/progress.h"
 #include "messages/fill_messages.h"
 #include "netgen.h"
+#include "tetgen.h"
 #include "vdb_offset/api.h"
 
 namespace vdb_offset {
@@ -59,11 +61,18 @@ struct Reply {
 
 Reply reply_to(const Message& asked) {
   try {
-    if (asked.kind != static_cast<std::uint32_t>(FillWith::Netgen)) throw BadMessage("a request of no kind");
     const FillTask task = unpack_fill_task(asked.payload);
-    limit_memory(task.most_memory);
     const Heartbeat heartbeat;
-    return {FillReply::Done, pack(fill_by_netgen(task.domain))};
+    switch (static_cast<FillWith>(asked.kind)) {
+      case FillWith::Netgen:
+        limit_memory(task.most_memory);
+        return {FillReply::Done, pack(fill_by_netgen(task.domain))};
+      case FillWith::TetGen:
+        return {FillReply::Done, pack(fill_by_tetgen(task.domain, task.folder, task.most_memory))};
+    }
+    throw BadMessage("a request of no kind");
+  } catch (const FillerMissing& missing) {
+    return {FillReply::Missing, missing.what()};
   } catch (const std::bad_alloc&) {
     return {FillReply::OutOfMemory, {}};
   } catch (const std::exception& error) {

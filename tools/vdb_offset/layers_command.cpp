@@ -124,7 +124,8 @@ void fill(const Job& job, Grown& grown, ProgressBar& bar) {
   const auto format = io::volume_format_of(job.request.output);
   const bool holds_polyhedra = format != io::VolumeFormat::Msh && format != io::VolumeFormat::Su2;
   options.quads = request.quads.value_or(holds_polyhedra ? FillQuads::Split : FillQuads::Pyramids);
-  const Filler filler = io::netgen_filler({request.seconds, job.request.max_memory, options.progress});
+  const io::FillerLimits limits{request.seconds, job.request.max_memory, options.progress};
+  const Filler filler = request.by_tetgen ? io::tetgen_filler(limits) : io::netgen_filler(limits);
   const auto start = Clock::now();
   try {
     grown.report.fill.emplace();

@@ -15,7 +15,7 @@ namespace vdb_offset {
 // request, and sends one reply.
 
 /// What a worker fills with: the kind of a request, whose payload is a FillTask.
-enum class FillWith : std::uint32_t { Netgen = 1 };
+enum class FillWith : std::uint32_t { Netgen = 1, TetGen = 2 };
 
 /// What the worker says.
 enum class FillReply : std::uint32_t {
@@ -23,18 +23,20 @@ enum class FillReply : std::uint32_t {
   Done = 2,         ///< A FilledDomain.
   Failed = 3,       ///< A text: what the filler says.
   OutOfMemory = 4,  ///< Nothing.
+  Missing = 5,      ///< A text: a program that is not there.
   Progress = kProgressMessage,
 };
 
 struct FillTask {
   FillDomain domain;
+  std::string folder;             ///< For a filler's files; empty for Netgen, which has none.
   std::uint64_t most_memory = 0;  ///< How many bytes more than it has at its start the worker may ask for; 0: any.
 };
 
 inline std::string pack(const FillTask& task) {
   Packer packer;
-  packer.list(task.domain.points).list(task.domain.triangles);
-  packer.value(task.domain.growth).value(task.domain.longest).value(task.most_memory);
+  packer.list(task.domain.points).list(task.domain.triangles).list(task.domain.outside);
+  packer.value(task.domain.growth).value(task.domain.longest).text(task.folder).value(task.most_memory);
   return packer.take();
 }
 
@@ -44,8 +46,10 @@ inline FillTask unpack_fill_task(std::string_view bytes) {
   FillTask task;
   task.domain.points = unpacker.list<Vec3d>();
   task.domain.triangles = unpacker.list<std::array<std::uint32_t, 3>>();
+  task.domain.outside = unpacker.list<Vec3d>();
   task.domain.growth = unpacker.value<double>();
   task.domain.longest = unpacker.value<double>();
+  task.folder = unpacker.text();
   task.most_memory = unpacker.value<std::uint64_t>();
   unpacker.end();
   return task;

@@ -164,7 +164,7 @@ void require_together(const GivenNames& given) {
       {{"--structured", "--fan-angle"}, NeedsAnyOf, {"--layers", "--heights"}},
       {{"--structured"}, Excludes, {"--fan-angle", "--fill"}},
       {{"--fill"}, NeedsAnyOf, {"--layers", "--heights"}},
-      {{"--farfield", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds", "--layers-anyway"},
+      {{"--farfield", "--fill-with", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds", "--layers-anyway"},
        NeedsAnyOf,
        {"--fill"}},
       {{"--layers"}, NeedsOneOf, {"--first-height", "--total-thickness", "--heights"}},

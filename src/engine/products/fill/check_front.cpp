@@ -78,7 +78,7 @@ void require_no_crossing(std::span<const Vec3d> points, std::span<const FrontTri
   };
   throw FillFailed(
       fmt::format("fill: expected a domain whose border does not cross itself, got {} pairs of faces that do, the first "
-                  "at {} and {}",
+                  "at {} and {} (where the input itself does so, --mode iso makes one that does not)",
                   crossings.size(), place(crossings[0].first), place(crossings[0].second)));
 }
 

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "ground/mesh/exact_predicates.h"
+#include "ground/numbers/disjoint_sets.h"
 #include "ground/numbers/quantiles.h"
 #include "ground/system/call_progress.h"
 #include "ground/system/parallel.h"
@@ -118,9 +119,26 @@ class Filling {
       const auto& [a, b, c] = triangle.corners;
       domain.triangles.push_back({number[a], number[b], number[c]});
     }
+    add_outside(domain);
     domain.growth = options_.growth;
     domain.longest = options_.longest.value_or((box.highest - box.lowest).length());
     return domain;
+  }
+
+  /// Adds a point in a cell behind each shell that has cells behind it.
+  void add_outside(FillDomain& domain) const {
+    DisjointSets shells(volume_.points.size());
+    for (const FrontTriangle& triangle : front_.triangles)
+      for (std::size_t k = 0; k < 2; ++k) shells.join(triangle.corners[k], triangle.corners[k + 1]);
+    std::vector<std::uint8_t> has_point(volume_.points.size(), 0);
+    for (const FrontTriangle& triangle : front_.triangles) {
+      const Index shell = shells.first(triangle.corners[0]);
+      if (triangle.cell == kNone || has_point[shell] != 0) continue;
+      has_point[shell] = 1;
+      Vec3d sum(0.0);
+      for (const Index p : volume_.cell(triangle.cell)) sum += volume_.points[p];
+      domain.outside.push_back(sum / static_cast<double>(volume_.cell(triangle.cell).size()) - middle_);
+    }
   }
 
   void join(const FilledDomain& filled) {

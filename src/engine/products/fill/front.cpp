@@ -51,26 +51,54 @@ class WallPoints {
   std::map<Key, Index> known_;
 };
 
-/// The triangles of a face that is parted. Of a quad, those beside its shorter diagonal: they are the rounder ones, and
-/// tetrahedra on them as well.
-std::vector<std::array<Index, 3>> parts_of(const std::vector<Vec3d>& points, std::span<const Index> face) {
-  std::vector<std::array<Index, 3>> parts;
-  if (face.size() != 4) {
-    triangulate(points, face, parts);
+/// How faces of the layers are parted: as the wall's own faces are, which the outermost surface is valid with.
+class Parting {
+ public:
+  Parting(PolygonView mesh, const LayersResult& layers, const VolumeMesh& volume)
+      : mesh_(mesh), layers_(layers), volume_(volume) {}
+
+  /// The triangles of a face of a cell of the last layer.
+  std::vector<std::array<Index, 3>> of(std::span<const Index> face, Index cell) const {
+    std::vector<std::array<Index, 3>> of_wall, parts;
+    append_triangles(mesh_, static_cast<std::size_t>(volume_.cell_fields[1].values[cell]), of_wall);
+    for (const auto& triangle : of_wall) {
+      std::array<Index, 3> part;
+      for (std::size_t k = 0; k < 3; ++k) part[k] = corner_over(triangle[k], face);
+      if (std::ranges::find(part, kNone) != part.end()) break;
+      parts.push_back(part);
+    }
+    if (parts.size() + 2 == face.size()) return along(face, std::move(parts));
+    parts.clear();
+    triangulate(volume_.points, face, parts);
     return parts;
   }
-  const auto diagonal = [&](std::size_t k) { return (points[face[k]] - points[face[k + 2]]).lengthSqr(); };
-  const auto along = [&](std::size_t k) {
-    const Vec3d &a = points[face[k]], &b = points[face[k + 1]], &c = points[face[k + 2]], &d = points[face[(k + 3) % 4]];
-    return (b - a).cross(c - a).dot((c - a).cross(d - a)) > 0;
-  };
-  const std::size_t k = diagonal(1) < diagonal(0) && along(1) ? 1 : along(0) ? 0 : 1;
-  return {{face[k], face[k + 1], face[k + 2]}, {face[k], face[k + 2], face[(k + 3) % 4]}};
-}
+
+ private:
+  /// The corner of a face that lies over a vertex of the wall; kNone if there is none.
+  Index corner_over(Index vertex, std::span<const Index> face) const {
+    const Vec3d& top = layers_.stacks.of(vertex).back();
+    const auto found = std::ranges::find_if(face, [&](Index p) { return volume_.points[p] == top; });
+    return found == face.end() ? kNone : *found;
+  }
+  /// The triangles as the face runs, which may be against the wall's.
+  static std::vector<std::array<Index, 3>> along(std::span<const Index> face, std::vector<std::array<Index, 3>> parts) {
+    const auto at = [&](Index p) { return std::ranges::find(face, p) - face.begin(); };
+    for (auto& [a, b, c] : parts) {
+      const auto i = at(a), j = at(b), k = at(c);
+      if (!((i < j && j < k) || (j < k && k < i) || (k < i && i < j))) std::swap(b, c);
+    }
+    return parts;
+  }
+
+  PolygonView mesh_;
+  const LayersResult& layers_;
+  const VolumeMesh& volume_;
+};
 
 class FrontTaker {
  public:
-  FrontTaker(FillQuads quads, VolumeMesh& volume) : quads_(quads), volume_(volume) {}
+  FrontTaker(FillQuads quads, const Parting& parting, VolumeMesh& volume)
+      : quads_(quads), parting_(parting), volume_(volume) {}
 
   /// Takes all faces of a patch, which then has none.
   void take(BoundaryPatch& patch) {
@@ -115,7 +143,7 @@ class FrontTaker {
       add(face[0], face[1], face[2], cell), add(face[0], face[2], face[3], cell);
       return;
     }
-    PartedFace parted{cell, {face.begin(), face.end()}, parts_of(volume_.points, face)};
+    PartedFace parted{cell, {face.begin(), face.end()}, parting_.of(face, cell)};
     for (const auto& [a, b, c] : parted.triangles) add(a, b, c, cell);
     front_.parted.push_back(std::move(parted));
   }
@@ -124,6 +152,7 @@ class FrontTaker {
   void add(Index a, Index b, Index c, Index cell) { front_.triangles.push_back({{a, c, b}, cell, kNone}); }
 
   FillQuads quads_;
+  const Parting& parting_;
   VolumeMesh& volume_;
   Front front_;
   std::vector<QuadOfFront> quads_on_;
@@ -133,7 +162,7 @@ class FrontTaker {
   const Vec3d middle = (volume.points[open[0][0]] + volume.points[open[0][1]]) / 2;
   throw InvalidInput(
       fmt::format("fill: expected a closed surface, got one with {} open edges, the first at ({:.6g}, {:.6g}, {:.6g}) "
-                  "(close its openings first)",
+                  "(--mode iso makes a closed one)",
                   open.size(), middle[0], middle[1], middle[2]));
 }
 
@@ -141,7 +170,8 @@ class FrontTaker {
 
 Front take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const WallNames& names,
                  FillQuads quads, VolumeMesh& volume) {
-  FrontTaker taker(quads, volume);
+  const Parting parting(mesh, layers, volume);
+  FrontTaker taker(quads, parting, volume);
   for (BoundaryPatch& patch : volume.patches)
     if (patch.kind == BoundaryPatch::Kind::Outer) taker.take(patch);
   taker.take_bare(mesh, layers.heights.back().farthest() < 0, layers, facts, names);

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Has Netgen fill a domain in a program of its own: it is started for one domain, has to be of this version, gets the
+// Has Netgen or TetGen fill a domain, by a program of its own: it is started for one domain, has to be of this version, gets the
 // domain as a message and answers with one. Whatever it does else becomes an error.
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <optional>
 #include <system_error>
 
 #include "bytes/open_module.h"
 #include "ground/process/worker_process.h"
+#include "ground/system/temporary.h"
 #include "messages/fill_messages.h"
 #include "vdb_offset/io/filler.h"
 
@@ -23,9 +28,35 @@ constexpr std::uint64_t kMostOfFilling = std::uint64_t{1} << 40;
                               kFillProgram, found));
 }
 
-class NetgenRun {
+/// A folder for files that goes with this object.
+class FolderForFiles {
  public:
-  explicit NetgenRun(const FillerLimits& limits) : limits_(limits) {
+  FolderForFiles() {
+    std::string name = (std::filesystem::temp_directory_path() / "vdb_offset-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw WriteError(name + ": cannot be made: " + std::strerror(errno));
+    folder_.emplace(name, Temporary::Kind::Folder);
+  }
+  ~FolderForFiles() {
+    std::error_code lost;
+    for (const auto& file : std::filesystem::directory_iterator(path(), lost)) std::filesystem::remove(file, lost);
+  }
+  FolderForFiles(const FolderForFiles&) = delete;
+  FolderForFiles& operator=(const FolderForFiles&) = delete;
+
+  const std::string& path() const { return folder_->path(); }
+
+ private:
+  std::optional<Temporary> folder_;
+};
+
+struct FillerName {
+  FillWith with;
+  const char* name;
+};
+
+class FillerRun {
+ public:
+  FillerRun(const FillerName& filler, const FillerLimits& limits) : filler_(filler), limits_(limits) {
     constexpr double kForever = 1e8;  // seconds, three years; more would not be counted
     if (limits.seconds < kForever)
       until_ = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -35,14 +66,18 @@ class NetgenRun {
   FilledDomain fill(const FillDomain& domain) {
     try {
       start();
-      process_->messages().send(static_cast<std::uint32_t>(FillWith::Netgen),
-                                pack(FillTask{domain, limits_.most_memory}), until_);
+      std::optional<FolderForFiles> folder;
+      if (filler_.with != FillWith::Netgen) folder.emplace();
+      process_->messages().send(static_cast<std::uint32_t>(filler_.with),
+                                pack(FillTask{domain, folder ? folder->path() : "", limits_.most_memory}), until_);
       const Message reply = receive();
       switch (static_cast<FillReply>(reply.kind)) {
         case FillReply::Done:
           return unpack_filled(reply.payload);
         case FillReply::Failed:
-          throw FillFailed("fill: expected a domain that Netgen can fill, got: " + reply.payload);
+          throw FillFailed(fmt::format("fill: expected a domain that {} can fill, got {}", filler_.name, reply.payload));
+        case FillReply::Missing:
+          throw ReadError("fill: expected the program that fills to be installed, got " + reply.payload);
         case FillReply::OutOfMemory:
           throw OutOfBudget("fill: needs more memory than --max-memory allows");
         default:
@@ -51,8 +86,10 @@ class NetgenRun {
     } catch (const Hangup&) {
       fail_by_end();
     } catch (const TooLate&) {
-      throw FillFailed(fmt::format("fill: expected a domain that Netgen fills within {} s (--fill-seconds)",
-                                   limits_.seconds));
+      process_.reset();
+      throw FillFailed(fmt::format("fill: expected a domain that {} fills within {} s, got one that takes longer "
+                                   "(--fill-seconds)",
+                                   filler_.name, limits_.seconds));
     } catch (const BadMessage& bad) {
       throw FillFailed(std::string("fill: expected an answer of ") + kFillProgram + ", got " + bad.what());
     }
@@ -89,9 +126,10 @@ class NetgenRun {
     const std::string end = !status                ? "its end"
                             : WIFSIGNALED(*status) ? fmt::format("its end by signal {}", WTERMSIG(*status))
                                                    : fmt::format("its end with code {}", WEXITSTATUS(*status));
-    throw FillFailed("fill: expected a domain that Netgen can fill, got " + end);
+    throw FillFailed(fmt::format("fill: expected a domain that {} can fill, got {}", filler_.name, end));
   }
 
+  const FillerName& filler_;
   const FillerLimits& limits_;
   Deadline until_;
   std::optional<WorkerProcess> process_;
@@ -100,7 +138,13 @@ class NetgenRun {
 }  // namespace
 
 Filler netgen_filler(FillerLimits limits) {
-  return [limits = std::move(limits)](const FillDomain& domain) { return NetgenRun(limits).fill(domain); };
+  static constexpr FillerName kNetgen{FillWith::Netgen, "Netgen"};
+  return [limits = std::move(limits)](const FillDomain& domain) { return FillerRun(kNetgen, limits).fill(domain); };
+}
+
+Filler tetgen_filler(FillerLimits limits) {
+  static constexpr FillerName kTetGen{FillWith::TetGen, "TetGen"};
+  return [limits = std::move(limits)](const FillDomain& domain) { return FillerRun(kTetGen, limits).fill(domain); };
 }
 
 }  // namespace vdb_offset::io
