@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ground/mesh/exact_predicates.h"
 #include "ground/numbers/disjoint_sets.h"
 #include "space/surface/surface.h"
 #include "valid/faults/triangle_crossings.h"
@@ -68,14 +69,22 @@ bool is_enclosed(std::span<const Vec3d> points, std::span<const FrontTriangle> f
   return largest != volume.end() && *largest > 0;
 }
 
-void require_no_crossing(std::span<const Vec3d> points, std::span<const FrontTriangle> front) {
-  const std::vector<TrianglePair> crossings = crossings_of(points, front);
-  if (crossings.empty()) return;
-  const auto place = [&](std::uint32_t triangle) {
+void require_sound(std::span<const Vec3d> points, std::span<const FrontTriangle> front) {
+  const auto place = [&](std::size_t triangle) {
     const auto& [a, b, c] = front[triangle].corners;
     const Vec3d middle = (points[a] + points[b] + points[c]) / 3;
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", middle[0], middle[1], middle[2]);
   };
+  for (std::size_t t = 0; t < front.size(); ++t) {
+    const auto& [a, b, c] = front[t].corners;
+    if (has_no_area({points[a], points[b], points[c]}))
+      throw FillFailed(
+          fmt::format("fill: expected faces with an area, got one without at {} (layers have no height there: remesh the "
+                      "wall, whose faces have none)",
+                      place(t)));
+  }
+  const std::vector<TrianglePair> crossings = crossings_of(points, front);
+  if (crossings.empty()) return;
   throw FillFailed(
       fmt::format("fill: expected a domain whose border does not cross itself, got {} pairs of faces that do, the first "
                   "at {} and {} (where the input itself does so, --mode iso makes one that does not)",

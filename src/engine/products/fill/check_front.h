@@ -22,7 +22,7 @@ double six_volumes_inside(std::span<const Vec3d> points, std::span<const FrontTr
 /// around all of it.
 bool is_enclosed(std::span<const Vec3d> points, std::span<const FrontTriangle> front);
 
-/// \throw FillFailed for the first two triangles that cross, with their place
-void require_no_crossing(std::span<const Vec3d> points, std::span<const FrontTriangle> front);
+/// \throw FillFailed for a triangle without an area, and for the first two that cross, with their place
+void require_sound(std::span<const Vec3d> points, std::span<const FrontTriangle> front);
 
 }  // namespace vdb_offset

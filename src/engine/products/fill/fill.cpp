@@ -54,7 +54,7 @@ class Filling {
     front_size_ = front_.triangles.size();
     if (front_size_ == 0) throw InvalidInput("fill: expected layers, got none");
     if (!is_enclosed(volume_.points, front_.triangles)) add_farfield();
-    require_no_crossing(volume_.points, front_.triangles);
+    require_sound(volume_.points, front_.triangles);
     six_volumes_ = six_volumes_inside(volume_.points, front_.triangles);
     if (!(six_volumes_ > 0))
       throw FillFailed("fill: expected a domain with a volume, got one that its border turns inside out");
@@ -157,8 +157,16 @@ class Filling {
     }
   }
 
-  /// \throw FillFailed unless all new cells have volumes above 0, which sum up to that of the domain
+  /// \throw FillFailed unless all new cells have volumes above 0, and the tetrahedra's sum up to that of the domain
   void prove_cells() {
+    for (std::size_t c = layer_cells_; c < first_tetrahedron_; ++c)
+      if (!(scaled_jacobian(volume_, c) > 0)) {
+        const Vec3d& place = volume_.points[volume_.cell(c)[4]];
+        throw FillFailed(
+            fmt::format("fill: expected faces that a pyramid can stand on, got one that is too bent at ({:.6g}, {:.6g}, "
+                        "{:.6g}) (--fill-quads split, in .vtu, .cgns or polyMesh)",
+                        place[0], place[1], place[2]));
+      }
     std::atomic<std::uint64_t> first_wrong = kNone;
     for_each_index(volume_.cell_count() - first_tetrahedron_, [&](std::size_t i) {
       const auto cell = volume_.cell(first_tetrahedron_ + i);

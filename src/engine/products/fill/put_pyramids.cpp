@@ -41,7 +41,7 @@ class Pyramids {
     make();
     for (int round = 0; round < kRounds; ++round)
       if (!lower_crossing()) return;
-    require_no_crossing(volume_.points, front_.triangles);
+    require_sound(volume_.points, front_.triangles);
   }
 
  private:
