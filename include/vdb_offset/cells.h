@@ -39,7 +39,7 @@ struct VolumeField {
 
 /// A named part of the boundary of a volume mesh.
 struct VDB_OFFSET_API BoundaryPatch {
-  enum class Kind : std::uint8_t { Wall, Outer, Side };
+  enum class Kind : std::uint8_t { Wall, Outer, Side, Symmetry };
   std::string name;  ///< No two patches have one name.
   Kind kind = Kind::Wall;
   /// Points of the faces, which run ccw seen from outside the volume. Faces of a plane mesh have two points each, in

@@ -51,6 +51,17 @@ Pieces foam_points(const VolumeMesh& mesh) {
                      }}});
 }
 
+const char* type_of(BoundaryPatch::Kind kind) {
+  switch (kind) {
+    case BoundaryPatch::Kind::Wall:
+      return "wall";
+    case BoundaryPatch::Kind::Symmetry:
+      return "symmetry";
+    default:
+      return "patch";
+  }
+}
+
 template <class Face>
 void append_foam_face(std::string& text, const Face& face, std::size_t size) {
   append_integer(text, size);
@@ -127,7 +138,7 @@ class FoamWriter {
       text += fmt::format(
           "    {}\n    {{\n        type            {};\n        nFaces          {};\n"
           "        startFace       {};\n    }}\n",
-          names_[i], patch.kind == BoundaryPatch::Kind::Wall ? "wall" : "patch", patch.face_count(), start);
+          names_[i], type_of(patch.kind), patch.face_count(), start);
       start += patch.face_count();
     }
     return text + ")\n";

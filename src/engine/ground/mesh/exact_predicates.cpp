@@ -33,6 +33,12 @@ int side_of(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
   return CGAL::orientation(Point2(a[0], a[1]), Point2(b[0], b[1]), Point2(c[0], c[1]));
 }
 
+int side_of_circle(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d) {
+  using Point2 = Kernel::Point_2;
+  const Point2 p(a[0], a[1]), q(b[0], b[1]), r(c[0], c[1]), s(d[0], d[1]);
+  return CGAL::side_of_oriented_circle(p, q, r, s);
+}
+
 int side_of_plane(const std::array<Vec3d, 3>& triangle, const Vec3d& at) {
   return CGAL::orientation(point(triangle[0]), point(triangle[1]), point(triangle[2]), point(at));
 }

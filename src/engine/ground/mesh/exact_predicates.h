@@ -11,6 +11,9 @@ namespace vdb_offset {
 /// Which side of the line from a to b point c lies on: 1 left, -1 right, 0 on it.
 int side_of(const Vec2d& a, const Vec2d& b, const Vec2d& c);
 
+/// Where d lies of the circle through a, b and c, which run counter-clockwise: 1 inside, -1 outside, 0 on it.
+int side_of_circle(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& d);
+
 /// Which side of a triangle's plane a point lies on: 1 where its corners run counter-clockwise, -1 behind, 0 on it.
 int side_of_plane(const std::array<Vec3d, 3>& triangle, const Vec3d& point);
 

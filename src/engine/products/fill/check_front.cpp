@@ -27,7 +27,7 @@ std::vector<TrianglePair> crossings_of(std::span<const Vec3d> points, std::span<
   return CrossingFinder(surface, points).listed().pairs;
 }
 
-std::vector<std::array<std::uint32_t, 2>> unpaired_edges(std::span<const FrontTriangle> front) {
+std::vector<std::array<std::uint32_t, 2>> open_edges(std::span<const FrontTriangle> front) {
   struct Side {
     std::array<std::uint32_t, 2> ends;  // the smaller one first
     bool is_forwards;
@@ -40,14 +40,17 @@ std::vector<std::array<std::uint32_t, 2>> unpaired_edges(std::span<const FrontTr
       sides.push_back({{std::min(from, to), std::max(from, to)}, from < to});
     }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.ends < b.ends; });
-  std::vector<std::array<std::uint32_t, 2>> unpaired;
+  std::vector<std::array<std::uint32_t, 2>> open;
   for (std::size_t i = 0, next; i < sides.size(); i = next) {
-    std::size_t forwards = 0;
-    for (next = i; next < sides.size() && sides[next].ends == sides[i].ends; ++next) forwards += sides[next].is_forwards;
-    // Shells that touch along an edge have two pairs there; what is between them is known by crossings alone.
-    if (2 * forwards != next - i) unpaired.push_back(sides[i].ends);
+    // Shells that touch along an edge have two pairs there.
+    int surplus = 0;
+    for (next = i; next < sides.size() && sides[next].ends == sides[i].ends; ++next)
+      surplus += sides[next].is_forwards ? 1 : -1;
+    const auto [a, b] = sides[i].ends;
+    for (; surplus > 0; --surplus) open.push_back({b, a});
+    for (; surplus < 0; ++surplus) open.push_back({a, b});
   }
-  return unpaired;
+  return open;
 }
 
 double six_volumes_inside(std::span<const Vec3d> points, std::span<const FrontTriangle> front) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "vdb_offset/shapes.h"
 
@@ -14,17 +15,51 @@ namespace {
 
 // The edges of a sphere are 0.27 to 0.33 of its radius at two subdivisions, and those of a box a fourth of its longest
 // side: with three, or an eighth, bodies had 3 to 10 % more cells, all of them far away.
-constexpr int kSubdivisions = 2;
+constexpr int kSubdivisions = 2, kSegments = 24, kRings = 6;
 constexpr double kCellsAlong = 4;
 
 // The least room between a body and the farfield, as a share of the body's length: a hundredth would make cells as
 // small there as on the body.
 constexpr double kLeastRoom = 0.1;
 
-/// A grid of triangles on each side of a box, with cells about as wide as high.
-Polygons grid_box(const Vec3d& lowest, const Vec3d& highest) {
-  const Vec3d size = highest - lowest;
-  const double cell = std::max({size[0], size[1], size[2]}) / kCellsAlong;
+/// A box along axes of its own, the last of which leads out of the planes that it ends at.
+struct Frame {
+  std::array<Vec3d, 3> axis{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};
+  Vec3d lowest{std::numeric_limits<double>::infinity()}, highest{-std::numeric_limits<double>::infinity()};
+  bool ends_above = false, ends_below = false;  // along the last axis
+
+  Vec3d in_frame(const Vec3d& x) const { return {x.dot(axis[0]), x.dot(axis[1]), x.dot(axis[2])}; }
+  Vec3d in_world(const Vec3d& x) const { return axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2]; }
+  Vec3d size() const { return highest - lowest; }
+  double length() const { return std::max({size()[0], size()[1], size()[2]}); }
+};
+
+Frame frame_of(std::span<const Vec3d> points, std::span<const OpenPlane> planes) {
+  Frame frame;
+  if (!planes.empty()) {
+    const auto [u, v] = axes_across(planes[0].normal);
+    frame.axis = {u, v, planes[0].normal};
+  }
+  for (const Vec3d& point : points) {
+    const Vec3d x = frame.in_frame(point);
+    frame.lowest = openvdb::math::minComponent(frame.lowest, x);
+    frame.highest = openvdb::math::maxComponent(frame.highest, x);
+  }
+  for (const OpenPlane& plane : planes) {
+    const double towards = plane.normal.dot(frame.axis[2]);
+    if (std::abs(towards) < 1 - 1e-9)
+      throw InvalidInput("fill: expected openings in planes that are parallel, got others (--farfield FILE)");
+    const double place = plane.origin.dot(frame.axis[2]);
+    if (towards > 0) frame.highest[2] = place, frame.ends_above = true;
+    else frame.lowest[2] = place, frame.ends_below = true;
+  }
+  return frame;
+}
+
+/// A grid of triangles on each side of a frame's box, with cells about as wide as high, but where it ends at planes.
+Polygons grid_box(const Frame& frame) {
+  const Vec3d size = frame.size();
+  const double cell = frame.length() / kCellsAlong;
   std::array<int, 3> count;
   for (int k = 0; k < 3; ++k) count[k] = std::max(1, static_cast<int>(std::lround(size[k] / cell)));
   Polygons box;
@@ -32,16 +67,17 @@ Polygons grid_box(const Vec3d& lowest, const Vec3d& highest) {
   const auto point = [&](const std::array<int, 3>& at) {
     std::uint32_t& known = number[(at[2] * (count[1] + 1) + at[1]) * (count[0] + 1) + at[0]];
     if (known != kNone) return known;
-    Vec3d position;
+    Vec3d x;
     for (int k = 0; k < 3; ++k)
-      position[k] = at[k] == count[k] ? highest[k] : lowest[k] + size[k] * at[k] / count[k];
+      x[k] = at[k] == count[k] ? frame.highest[k] : frame.lowest[k] + size[k] * at[k] / count[k];
     known = static_cast<std::uint32_t>(box.positions.size());
-    box.positions.push_back(position);
+    box.positions.push_back(frame.in_world(x));
     return known;
   };
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const bool is_upper : {false, true})
+    for (const bool is_upper : {false, true}) {
+      if (axis == 2 && (is_upper ? frame.ends_above : frame.ends_below)) continue;
       for (int i = 0; i < count[u]; ++i)
         for (int j = 0; j < count[v]; ++j) {
           const auto corner = [&](int di, int dj) {
@@ -54,8 +90,24 @@ Polygons grid_box(const Vec3d& lowest, const Vec3d& highest) {
           if (is_upper) box.add_face({a, b, c}), box.add_face({a, c, d});
           else box.add_face({a, c, b}), box.add_face({a, d, c});
         }
+    }
   }
   return box;
+}
+
+/// A sphere around the middle of a frame's box, or half of one around that of the side at a plane.
+Polygons sphere_around(const Frame& frame, double radius) {
+  if (frame.ends_above && frame.ends_below)
+    throw InvalidInput("farfield: expected a box, as the wall ends at two planes, got a sphere (--farfield box:10L)");
+  Vec3d middle = (frame.lowest + frame.highest) / 2;
+  std::array<Vec3d, 3> axis = frame.axis;
+  if (frame.ends_above) middle[2] = frame.highest[2], axis = {axis[1], axis[0], -axis[2]};
+  const Vec3d centre = frame.in_world(middle);
+  Polygons sphere = frame.ends_above ? shapes::hemisphere(radius, kSegments, kRings)
+                                     : shapes::icosphere(radius, kSubdivisions);
+  // Exactly in the plane.
+  for (Vec3d& x : sphere.positions) x = centre + axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2];
+  return sphere;
 }
 
 Polygons triangles_of(const Polygons& surface) {
@@ -84,11 +136,11 @@ double winding_number(const Polygons& surface, const Vec3d& x) {
   return sum / kTwoPi;
 }
 
-void require_enclosed(const Polygons& farfield, const Vec3d& lowest, const Vec3d& highest) {
+void require_enclosed(const Polygons& farfield, const Frame& frame) {
   for (int corner = 0; corner < 8; ++corner) {
     Vec3d x;
-    for (int k = 0; k < 3; ++k) x[k] = (corner >> k) % 2 == 1 ? highest[k] : lowest[k];
-    if (winding_number(farfield, x) < 0.5)
+    for (int k = 0; k < 3; ++k) x[k] = (corner >> k) % 2 == 1 ? frame.highest[k] : frame.lowest[k];
+    if (winding_number(farfield, frame.in_world(x)) < 0.5)
       throw InvalidInput(
           fmt::format("farfield: expected a surface around the layers, with faces counter-clockwise seen from outside, "
                       "got one that ({:.6g}, {:.6g}, {:.6g}), a corner of their box, is outside of",
@@ -98,30 +150,33 @@ void require_enclosed(const Polygons& farfield, const Vec3d& lowest, const Vec3d
 
 }  // namespace
 
-Polygons make_farfield(const Farfield& farfield, const Vec3d& lowest, const Vec3d& highest) {
-  const Vec3d size = highest - lowest;
-  const double length = std::max({size[0], size[1], size[2]}), room = kLeastRoom * length;
-  Polygons surface;
+Polygons make_farfield(const Farfield& farfield, std::span<const Vec3d> points, std::span<const OpenPlane> planes) {
+  Frame frame = frame_of(points, planes);
   if (farfield.shape == Farfield::Shape::Given) {
-    surface = triangles_of(farfield.surface);
-    require_enclosed(surface, lowest, highest);
+    Polygons surface = triangles_of(farfield.surface);
+    if (planes.empty()) require_enclosed(surface, frame);
     return surface;
   }
+  const double length = frame.length(), room = kLeastRoom * length;
   const double reach = farfield.in_lengths ? farfield.size * length : farfield.size;
   if (farfield.shape == Farfield::Shape::Box) {
     if (!(reach >= room))
       throw InvalidInput(
           fmt::format("farfield: expected a box at least {:.3g} beyond the layers, got {:.3g}", room, reach));
-    return grid_box(lowest - Vec3d(reach), highest + Vec3d(reach));
+    for (int k = 0; k < 3; ++k) {
+      if (k < 2 || !frame.ends_below) frame.lowest[k] -= reach;
+      if (k < 2 || !frame.ends_above) frame.highest[k] += reach;
+    }
+    return grid_box(frame);
   }
   // Its triangles come nearer to the middle than the radius, by 4 %.
-  const double least = 1.1 * size.length() / 2 + room;
+  Vec3d half = frame.size() / 2;
+  if (frame.ends_above) half[2] *= 2;
+  const double least = 1.1 * half.length() + room;
   if (!(reach >= least))
     throw InvalidInput(
         fmt::format("farfield: expected a radius of at least {:.3g}, to enclose the layers, got {:.3g}", least, reach));
-  surface = shapes::icosphere(reach, kSubdivisions);
-  for (Vec3d& position : surface.positions) position += (lowest + highest) / 2;
-  return surface;
+  return triangles_of(sphere_around(frame, reach));
 }
 
 }  // namespace vdb_offset

@@ -24,6 +24,7 @@
 #include "products/fill/check_front.h"
 #include "products/fill/farfield.h"
 #include "products/fill/front.h"
+#include "products/fill/openings.h"
 #include "products/volume/cell_quality.h"
 #include "products/volume/volume_faces.h"
 
@@ -53,7 +54,7 @@ class Filling {
     front_ = take_front(mesh, layers, facts, names, options_.quads, volume_);
     front_size_ = front_.triangles.size();
     if (front_size_ == 0) throw InvalidInput("fill: expected layers, got none");
-    if (!is_enclosed(volume_.points, front_.triangles)) add_farfield();
+    close();
     require_sound(volume_.points, front_.triangles);
     six_volumes_ = six_volumes_inside(volume_.points, front_.triangles);
     if (!(six_volumes_ > 0))
@@ -80,24 +81,55 @@ class Filling {
   }
 
  private:
-  void add_farfield() {
-    Box box;
+  /// Closes the front: its openings by caps if it encloses what is left, or else by the farfield, and by planes of symmetry
+  /// between that and its openings.
+  void close() {
+    std::vector<OpenPlane> planes = open_planes(volume_.points, open_edges(front_.triangles));
+    if (!planes.empty() && !options_.caps) {
+      const Vec3d& place = planes[0].origin;
+      throw InvalidInput(fmt::format("fill: expected a closed surface, got one with {} openings, the first around ({:.6g}, "
+                                     "{:.6g}, {:.6g})",
+                                     planes.size(), place[0], place[1], place[2]));
+    }
+    const bool has_farfield = !is_enclosed_by(volume_.points, front_.triangles, planes);
+    if (has_farfield) {
+      // What is to be filled lies around these edges, not between them.
+      for (OpenPlane& plane : planes) plane.normal = -plane.normal;
+      add_farfield(planes);
+      planes = open_planes(volume_.points, open_edges(front_.triangles));
+    }
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const std::string number = planes.size() > 1 ? fmt::format("_{}", i + 1) : "";
+      const std::string name = free_name((has_farfield ? "symmetry" : "cap") + number);
+      cover(planes[i], options_, name, has_farfield, front_, volume_);
+    }
+    if (!open_edges(front_.triangles).empty()) throw FillFailed("fill: expected openings that can be covered, got others");
+  }
+
+  void add_farfield(std::span<const OpenPlane> planes) {
+    std::vector<Vec3d> points;
     for (const FrontTriangle& triangle : front_.triangles)
-      for (const Index p : triangle.corners) box.add(volume_.points[p]);
-    const Polygons farfield = make_farfield(options_.farfield, box.lowest, box.highest);
+      for (const Index p : triangle.corners) points.push_back(volume_.points[p]);
+    const Polygons farfield = make_farfield(options_.farfield, points, planes);
     const auto first = static_cast<Index>(volume_.points.size()), patch = static_cast<Index>(volume_.patches.size());
     volume_.points.insert(volume_.points.end(), farfield.positions.begin(), farfield.positions.end());
     for (std::size_t f = 0; f < farfield.face_count(); ++f) {
       const auto face = farfield.view().face(f);
       front_.triangles.push_back({{first + face[0], first + face[1], first + face[2]}, kNone, patch});
     }
-    BoundaryPatch& outer = volume_.patches.emplace_back();
-    outer.kind = BoundaryPatch::Kind::Outer;
-    outer.name = "farfield";
-    const auto is_taken = [&](const BoundaryPatch& other) { return &other != &outer && other.name == outer.name; };
-    for (int n = 2; std::ranges::any_of(volume_.patches, is_taken); ++n) outer.name = fmt::format("farfield_{}", n);
-    if (!unpaired_edges(std::span(front_.triangles).subspan(front_size_)).empty())
+    volume_.patches.push_back({.name = free_name("farfield"), .kind = BoundaryPatch::Kind::Outer});
+    if (planes.empty() && !open_edges(std::span(front_.triangles).subspan(front_size_)).empty())
       throw InvalidInput("farfield: expected a closed surface, got one with open edges");
+  }
+
+  /// A name that no patch has.
+  std::string free_name(const std::string& wanted) const {
+    const auto is_taken = [&](const std::string& name) {
+      return std::ranges::any_of(volume_.patches, [&](const BoundaryPatch& patch) { return patch.name == name; });
+    };
+    std::string name = wanted;
+    for (int n = 2; is_taken(name); ++n) name = fmt::format("{}_{}", wanted, n);
+    return name;
   }
 
   FillDomain make_domain() {

@@ -5,12 +5,11 @@
 // pyramid is put on it, whose own sides are in the front then, or the face itself is parted, with the cell behind it.
 #include "products/fill/front.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "ground/mesh/triangulate.h"
@@ -158,12 +157,16 @@ class FrontTaker {
   std::vector<QuadOfFront> quads_on_;
 };
 
-[[noreturn]] void fail_by_openings(const VolumeMesh& volume, std::span<const std::array<Index, 2>> open) {
-  const Vec3d middle = (volume.points[open[0][0]] + volume.points[open[0][1]]) / 2;
-  throw InvalidInput(
-      fmt::format("fill: expected a closed surface, got one with {} open edges, the first at ({:.6g}, {:.6g}, {:.6g}) "
-                  "(--mode iso makes a closed one)",
-                  open.size(), middle[0], middle[1], middle[2]));
+/// Whether faces of a patch of sides rise from where faces of the wall without layers begin.
+bool is_beside_bare(const BoundaryPatch& patch, const std::set<std::array<Index, 2>>& bare) {
+  for (std::size_t f = 0; f < patch.face_count(); ++f) {
+    const auto face = patch.face(f);
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index a = face[k], b = face[(k + 1) % face.size()];
+      if (bare.contains({a, b}) || bare.contains({b, a})) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -174,13 +177,12 @@ Front take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFa
   FrontTaker taker(quads, parting, volume);
   for (BoundaryPatch& patch : volume.patches)
     if (patch.kind == BoundaryPatch::Kind::Outer) taker.take(patch);
+  const std::size_t of_layers = taker.triangles().size();
   taker.take_bare(mesh, layers.heights.back().farthest() < 0, layers, facts, names);
-  if (auto open = unpaired_edges(taker.triangles()); !open.empty()) {
-    for (BoundaryPatch& patch : volume.patches)
-      if (patch.kind == BoundaryPatch::Kind::Side) taker.take(patch);
-    open = unpaired_edges(taker.triangles());
-    if (!open.empty()) fail_by_openings(volume, open);
-  }
+  std::set<std::array<Index, 2>> bare;
+  for (const auto& edge : open_edges(std::span(taker.triangles()).subspan(of_layers))) bare.insert(edge);
+  for (BoundaryPatch& patch : volume.patches)
+    if (patch.kind == BoundaryPatch::Kind::Side && is_beside_bare(patch, bare)) taker.take(patch);
   taker.put_pyramids();
   std::erase_if(volume.patches, [](const BoundaryPatch& patch) {
     return patch.kind != BoundaryPatch::Kind::Wall && patch.face_count() == 0;

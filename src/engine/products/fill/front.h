@@ -30,8 +30,8 @@ struct Front {
 };
 
 /// Takes the patch "outer" from the mesh, and the sides too where a part of the wall carries layers, and adds what of
-/// the wall carries none. On faces of four corners pyramids are put, or they are parted, as all larger faces are.
-/// \throw InvalidInput where the surface has openings
+/// the wall carries none. On faces of four corners pyramids are put, or they are parted, as all larger faces are. The
+/// front is open where the wall is.
 Front take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const WallNames& names,
                  FillQuads quads, VolumeMesh& volume);
 
