@@ -39,7 +39,13 @@ struct VolumeField {
 
 /// A named part of the boundary of a volume mesh.
 struct VDB_OFFSET_API BoundaryPatch {
-  enum class Kind : std::uint8_t { Wall, Outer, Side, Symmetry };
+  enum class Kind : std::uint8_t {
+    Wall,
+    Outer,     ///< The outermost layer, or the farfield.
+    Side,      ///< Where layers end, and openings.
+    Symmetry,  ///< A plane of symmetry.
+    Empty,     ///< The two ends of a plane mesh that is one cell thick.
+  };
   std::string name;  ///< No two patches have one name.
   Kind kind = Kind::Wall;
   /// Points of the faces, which run ccw seen from outside the volume. Faces of a plane mesh have two points each, in
@@ -240,6 +246,7 @@ struct LayerFigures {
 /// What filling the rest of the domain found and made: see fill_volume().
 struct FillReport {
   std::size_t tetrahedra = 0, pyramids = 0, split_cells = 0;
+  std::size_t triangles = 0;  ///< In place of tetrahedra, of layers on curves.
   std::size_t added_points = 0;
   std::size_t front = 0;   ///< Triangles that the tetrahedra had to keep.
   double volume = 0;       ///< Of tetrahedra and pyramids, world units^3.

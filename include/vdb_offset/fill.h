@@ -11,6 +11,7 @@
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/cells.h"
+#include "vdb_offset/curve_offset.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
@@ -86,5 +87,14 @@ struct FillOptions {
 VDB_OFFSET_API VolumeMesh fill_volume(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts,
                                       const WallNames& names, VolumeMesh cells, const FillOptions& options,
                                       const Filler& filler, FillReport* report = nullptr);
+
+/// fill_volume() of layers on curves: with triangles in their plane, made here. The farfield is a circle or a square.
+/// \throw InvalidInput for curves that are not closed
+VDB_OFFSET_API VolumeMesh fill_plane(CurveCells cells, const LayersResult& layers, const FillOptions& options,
+                                     FillReport* report = nullptr);
+
+/// A plane mesh as a solid one, one cell thick along its normal: triangles become prisms, quadrilaterals hexahedra. Its
+/// two ends are the patch "front_and_back", of kind Empty. \throw InvalidInput for a mesh that is not plane
+VDB_OFFSET_API VolumeMesh extruded(const VolumeMesh& plane, double thickness);
 
 }  // namespace vdb_offset

@@ -113,36 +113,56 @@ void write_surfaces(const Job& job, const Grown& grown) {
   }
 }
 
-/// Fills the rest of the domain. Where that fails and the layers are to be written anyway, there is a warning.
-void fill(const Job& job, Grown& grown, ProgressBar& bar) {
+FillOptions fill_options(const Job& job, PolygonView mesh, ProgressBar& bar) {
   const FillRequest& request = *job.request.fill;
-  const PolygonView mesh = grown.mesh(job.source);
-  FillOptions options{.farfield = request.farfield, .growth = request.growth, .progress = bar.callback()};
+  FillOptions options{.farfield = request.farfield, .growth = request.growth, .caps = request.caps, .progress = bar.callback()};
   if (job.source.farfield) options.farfield.surface = *job.source.farfield;
   if (request.longest)
     options.longest = request.longest->in_world_units(request.longest->percent ? used_diagonal(mesh) : 0);
   const auto format = io::volume_format_of(job.request.output);
   const bool holds_polyhedra = format != io::VolumeFormat::Msh && format != io::VolumeFormat::Su2;
   options.quads = request.quads.value_or(holds_polyhedra ? FillQuads::Split : FillQuads::Pyramids);
+  return options;
+}
+
+void fill_cells(const Job& job, Grown& grown, const FillOptions& options) {
+  FillReport& report = grown.report.fill.emplace();
+  if (job.curves()) {
+    grown.on_curves = fill_plane(make_curve_cells(grown.mesh(job.source), grown.layers), grown.layers, options, &report);
+    return;
+  }
+  const FillRequest& request = *job.request.fill;
   const io::FillerLimits limits{request.seconds, job.request.max_memory, options.progress};
   const Filler filler = request.by_tetgen ? io::tetgen_filler(limits) : io::netgen_filler(limits);
+  grown.filled = fill_volume(grown.mesh(job.source), grown.layers, grown.cells->facts(), grown.names,
+                             std::move(*grown.cells).make(grown.names), options, filler, &report);
+}
+
+/// Fills the rest of the domain. Where that fails and the layers are to be written anyway, there is a warning.
+void fill(const Job& job, Grown& grown, ProgressBar& bar) {
   const auto start = Clock::now();
   try {
-    grown.report.fill.emplace();
-    grown.filled = fill_volume(mesh, grown.layers, grown.cells->facts(), grown.names,
-                               std::move(*grown.cells).make(grown.names), options, filler, &*grown.report.fill);
+    fill_cells(job, grown, fill_options(job, grown.mesh(job.source), bar));
   } catch (const FillFailed& failed) {
     grown.report.fill.reset();
-    if (!request.layers_anyway) throw;
+    if (!job.request.fill->layers_anyway) throw;
     if (!job.request.quiet) report_problem(fmt::format("warning: {}; only the layers are written", failed.what()));
     // The cells' measures have gone with those that could not be filled up.
-    grown.cells.emplace(mesh, grown.layers);
+    if (grown.cells) grown.cells.emplace(grown.mesh(job.source), grown.layers);
   }
   grown.layers.statistics.seconds[static_cast<std::size_t>(Stage::Fill)] = seconds_since(start);
 }
 
+/// Cells on curves as a file has them: in their plane, or one cell thick, a tenth of the curves' size.
+VolumeMesh cells_on_curves(const Job& job, Grown& grown) {
+  const auto format = io::volume_format_of(job.request.output);
+  if (format == io::VolumeFormat::Vtu || format == io::VolumeFormat::Su2) return std::move(grown.on_curves);
+  constexpr double kThickness = 0.1;
+  return extruded(grown.on_curves, kThickness * used_diagonal(job.source.view()));
+}
+
 void write_volume(const Job& job, Grown& grown) {
-  VolumeMesh mesh = job.curves()   ? std::move(grown.on_curves)
+  VolumeMesh mesh = job.curves()   ? cells_on_curves(job, grown)
                     : grown.filled ? std::move(*grown.filled)
                                    : std::move(*grown.cells).make(grown.names);
   const io::VolumeWriteResult written = io::write_volume(job.request.output, std::move(mesh));

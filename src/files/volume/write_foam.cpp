@@ -57,6 +57,8 @@ const char* type_of(BoundaryPatch::Kind kind) {
       return "wall";
     case BoundaryPatch::Kind::Symmetry:
       return "symmetry";
+    case BoundaryPatch::Kind::Empty:
+      return "empty";
     default:
       return "patch";
   }

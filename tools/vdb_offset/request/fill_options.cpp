@@ -53,6 +53,13 @@ void declare_fill(CommandLine& line, Draft& draft) {
               "which goes R beyond it on each side, with R in world units or as in 20L in lengths of the wall (the "
               "longest side of its box), or a file with a closed mesh [sphere:20L]",
               [&fill](const std::string& text) { take_farfield(text, fill); });
+  line.option("--caps", "KIND",
+              "With --fill: 'flat' covers openings of the surface, each of which has to be flat: those of pipes by caps, "
+              "which belong to the patches of sides, those of half bodies by a plane of symmetry; 'none' refuses them "
+              "[flat]",
+              fill.caps, [](const std::string& text) {
+                return parse_word("--caps", text, {"flat", "none"}) == 0;
+              });
   line.option("--fill-growth", "R", "With --fill: an edge is no more than R times as long as its neighbours [1.3]",
               fill.growth, number_between("--fill-growth", "a number above 1, up to 10", 1, 10));
   line.option("--fill-max", "H", "With --fill: no edge is to be longer, world units or percent, but for the farfield's",

@@ -75,7 +75,7 @@ std::span<const HelpTopic> help_topics() {
       {"layers",
        "Layers of cells",
        {"layers", "first-height", "total-thickness", "growth", "heights", "fan-angle", "structured", "fill", "fill-with",
-        "farfield", "fill-growth", "fill-max", "fill-quads", "fill-seconds", "layers-anyway"}},
+        "farfield", "caps", "fill-growth", "fill-max", "fill-quads", "fill-seconds", "layers-anyway"}},
       {"inputs",
        "Curves, CAD models and level sets",
        {"close", "flatten", "deflection", "angle", "cad-seconds", "fit-tolerance", "faceted", "grid", "isovalue"}},

@@ -38,15 +38,18 @@ void require_structured(const Request& request) {
 /// Rules for an input of curves: outputs hold curves, and options about faces are refused.
 void require_for_curves(const Request& request) {
   const auto volume = io::volume_format_of(request.output);
-  const bool cells =
-      volume == io::VolumeFormat::Vtu || volume == io::VolumeFormat::Su2 || io::structured_format_of(request.output);
+  const bool cells = volume || io::structured_format_of(request.output);
   require(io::curve_format_of(request.output).has_value() || (request.layers && cells),
           request.output +
               ": expected an output that ends in .dat, .txt, .xy, .svg, .dxf or .obj, or with --layers in "
-              ".vtu, .su2, .vts or .xyz, as the input holds curves");
+              ".vtu, .su2, .msh, .cgns, .vts, .xyz or a folder named polyMesh, as the input holds curves");
+  require(!request.fill || volume,
+          request.output + ": expected .vtu, .su2, .msh, .cgns or a folder named polyMesh with --fill");
+  require(!request.fill || request.fill->farfield_file.empty(),
+          "--farfield: expected 'sphere:20L' or 'box:10L' for curves, got a file");
   require_structured(request);
   require(!request.layers || request.layers->fan_angle.value_or(0) == 0 || volume,
-          request.output + ": expected .vtu or .su2 with --fan-angle for curves, whose files have no room for fans");
+          request.output + ": expected a file of cells with --fan-angle for curves, whose files have no room for fans");
   require(!request.axes || request.write.digits == 0, "--precision and --distance-xy exclude each other for curves");
 }
 
@@ -164,7 +167,7 @@ void require_together(const GivenNames& given) {
       {{"--structured", "--fan-angle"}, NeedsAnyOf, {"--layers", "--heights"}},
       {{"--structured"}, Excludes, {"--fan-angle", "--fill"}},
       {{"--fill"}, NeedsAnyOf, {"--layers", "--heights"}},
-      {{"--farfield", "--fill-with", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds", "--layers-anyway"},
+      {{"--farfield", "--fill-with", "--caps", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds", "--layers-anyway"},
        NeedsAnyOf,
        {"--fill"}},
       {{"--layers"}, NeedsOneOf, {"--first-height", "--total-thickness", "--heights"}},
@@ -216,7 +219,7 @@ void require_options_for(const Request& request, bool curves, const char* meshes
   const char* of_meshes =
       first_given(request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle", "--shell", "--mode iso",
                             "--tolerance", "--corners arc", "--orient fix-direction-only", "--orient fix-cavities",
-                            "--deflection", "--fit", "--taper", "--fill"});
+                            "--deflection", "--fit", "--taper", "--fill-with", "--fill-quads", "--caps"});
   if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";
   if (of_meshes && curves)
     throw UsageError(fmt::format("{}: expected {}, as this is not for curves", of_meshes, meshes));

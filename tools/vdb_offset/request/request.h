@@ -72,6 +72,7 @@ struct FillRequest {
   std::optional<GivenDistance> longest;
   std::optional<FillQuads> quads;  ///< None: as OUTPUT can hold.
   bool by_tetgen = false;          ///< Else by Netgen.
+  bool caps = true;                ///< Cover flat openings.
   double seconds = 3600;
   bool layers_anyway = false;  ///< Where the rest cannot be filled, write the layers alone.
 };

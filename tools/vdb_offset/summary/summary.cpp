@@ -298,8 +298,9 @@ void print_summary(const Job& job, const Outcome& outcome, const Products& made,
 namespace {
 
 void add_fill(const FillReport& fill, Summary& made) {
-  made.verdict += fmt::format("; the rest filled with {} tetrahedra{}; their scaled Jacobian: least {:.3g}, 1 % below {:.3g}",
-                              fill.tetrahedra,
+  made.verdict += fmt::format("; the rest filled with {} {}{}; their scaled Jacobian: least {:.3g}, 1 % below {:.3g}",
+                              fill.triangles > 0 ? fill.triangles : fill.tetrahedra,
+                              fill.triangles > 0 ? "triangles" : "tetrahedra",
                               fill.pyramids > 0 ? fmt::format(" and {} pyramids", fill.pyramids) : "",
                               fill.scaled_jacobian.least, fill.scaled_jacobian.quantile_01);
   // OpenFOAM warns of interpolation weights below 0.05, which a jump of about 20 makes.

@@ -269,6 +269,7 @@ Json layers_json(const LayerReport& layers) {
   report["inverted_block_cells"] = layers.inverted_block_cells;
   if (layers.fill)
     report["fill"] = {{"tetrahedra", layers.fill->tetrahedra},
+                      {"triangles", layers.fill->triangles},
                       {"pyramids", layers.fill->pyramids},
                       {"split_cells", layers.fill->split_cells},
                       {"added_points", layers.fill->added_points},

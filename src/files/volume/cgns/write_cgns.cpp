@@ -234,8 +234,9 @@ class CgnsZone {
   void write_condition(const std::string& name, BoundaryPatch::Kind kind, cgsize_t first) {
     if (first == next_) return;
     const cgsize_t range[2] = {first, next_ - 1};
-    const auto type = kind == BoundaryPatch::Kind::Wall       ? CGNS_ENUMV(BCWall)
-                      : kind == BoundaryPatch::Kind::Symmetry ? CGNS_ENUMV(BCSymmetryPlane)
+    const bool is_mirror = kind == BoundaryPatch::Kind::Symmetry || kind == BoundaryPatch::Kind::Empty;
+    const auto type = kind == BoundaryPatch::Kind::Wall ? CGNS_ENUMV(BCWall)
+                      : is_mirror                       ? CGNS_ENUMV(BCSymmetryPlane)
                                                               : CGNS_ENUMV(BCGeneral);
     int condition = 0;
     require(cg_boco_write(file_, base_, zone_, name.c_str(), type, CGNS_ENUMV(PointRange), 2, range, &condition));
