@@ -45,6 +45,8 @@ struct VDB_OFFSET_API BoundaryPatch {
     Side,      ///< Where layers end, and openings.
     Symmetry,  ///< A plane of symmetry.
     Empty,     ///< The two ends of a plane mesh that is one cell thick.
+    Inlet,
+    Outlet,
   };
   std::string name;  ///< No two patches have one name.
   Kind kind = Kind::Wall;

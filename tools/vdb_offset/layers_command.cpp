@@ -2,6 +2,7 @@
 #include "layers_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
@@ -24,6 +25,9 @@
 
 namespace vdb_offset::tool {
 namespace {
+
+// How thick cells on curves are where they have to be solids, by the curves' size; it does not matter.
+constexpr double kThickness = 0.1;
 
 bool is_volume(const std::string& path) {
   return io::volume_format_of(path).has_value() || io::structured_format_of(path).has_value();
@@ -157,14 +161,45 @@ void fill(const Job& job, Grown& grown, ProgressBar& bar) {
 VolumeMesh cells_on_curves(const Job& job, Grown& grown) {
   const auto format = io::volume_format_of(job.request.output);
   if (format == io::VolumeFormat::Vtu || format == io::VolumeFormat::Su2) return std::move(grown.on_curves);
-  constexpr double kThickness = 0.1;
   return extruded(grown.on_curves, kThickness * used_diagonal(job.source.view()));
+}
+
+/// Calls patches as is asked for.
+void rename_patches(const Request& request, VolumeMesh& mesh) {
+  for (const PatchRequest& asked : request.patches) {
+    const auto patch = std::ranges::find(mesh.patches, asked.patch, &BoundaryPatch::name);
+    if (patch == mesh.patches.end()) {
+      std::vector<std::string> names;
+      for (const BoundaryPatch& each : mesh.patches) names.push_back(each.name);
+      throw InvalidOption(fmt::format("--patch: expected one of {}, got '{}'", fmt::join(names, ", "), asked.patch));
+    }
+    patch->name = asked.name;
+    if (asked.kind) patch->kind = *asked.kind;
+  }
+}
+
+void write_case(const Job& job, const VolumeMesh& mesh) {
+  const CaseRequest& request = job.request.solver_case;
+  io::Flow flow = request.flow;
+  Vec3d lowest = job.source.view().positions[0], highest = lowest;
+  for (const Vec3d& x : job.source.view().positions)
+    lowest = openvdb::math::minComponent(lowest, x), highest = openvdb::math::maxComponent(highest, x);
+  const Vec3d size = highest - lowest;
+  flow.length = request.length.value_or(std::max({size[0], size[1], size[2]}));
+  flow.viscosity = request.viscosity ? *request.viscosity : flow.speed * flow.length / *request.reynolds;
+  if (job.curves()) flow.thickness = kThickness * used_diagonal(job.source.view());
+  std::vector<io::CasePatch> patches;
+  for (const BoundaryPatch& patch : mesh.patches)
+    if (patch.face_count() > 0) patches.push_back({patch.name, patch.kind});
+  io::write_openfoam_case(request.folder, patches, flow);
 }
 
 void write_volume(const Job& job, Grown& grown) {
   VolumeMesh mesh = job.curves()   ? cells_on_curves(job, grown)
                     : grown.filled ? std::move(*grown.filled)
                                    : std::move(*grown.cells).make(grown.names);
+  rename_patches(job.request, mesh);
+  if (!job.request.solver_case.folder.empty()) write_case(job, mesh);
   const io::VolumeWriteResult written = io::write_volume(job.request.output, std::move(mesh));
   grown.report.foam = written.foam;
 }

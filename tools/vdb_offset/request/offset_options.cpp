@@ -389,6 +389,7 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_cad_output(line, draft.request);
   declare_products(line, draft);
   declare_fill(line, draft);
+  declare_case(line, draft);
   declare_method(line, draft);
   declare_files(line, draft);
   declare_run(line, draft);

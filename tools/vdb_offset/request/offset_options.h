@@ -39,6 +39,8 @@ std::vector<std::vector<std::string>> alternative_options();
 
 /// Declares the options that say how the rest of the domain is filled (fill_options.cpp).
 void declare_fill(CommandLine& line, Draft& draft);
+/// Declares those of patches and of cases for solvers.
+void declare_case(CommandLine& line, Draft& draft);
 
 /// Declares all options of an offset. \pre the draft lives as long as the command line
 void declare_offset_options(CommandLine& line, Draft& draft);

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -100,7 +101,19 @@ void require_for_mesh(const Request& request) {
           fmt::format("{}: expected an output that ends in {}, or --format", request.output, kMeshEndings));
 }
 
+void require_case(const Request& request) {
+  const std::string& folder = request.solver_case.folder;
+  if (folder.empty()) return;
+  const auto mesh = std::filesystem::path(request.output).lexically_normal(),
+             expected = (std::filesystem::path(folder) / "constant" / "polyMesh").lexically_normal();
+  require(mesh == expected || mesh == expected / "",
+          fmt::format("{}: expected {} as the OUTPUT of --case openfoam:{}", request.output, expected.string(), folder));
+}
+
 void require_endings(const Request& request) {
+  require_case(request);
+  require(request.patches.empty() || io::volume_format_of(request.output),
+          request.output + ": expected .vtu, .msh, .cgns, .su2 or a folder named polyMesh with --patch");
   require_states_file(request);
   require(request.paths.empty() || io::is_lines_file(request.paths) ||
               (io::curve_format_of(request.paths) && io::curve_format_of(request.paths) != io::CurveFormat::Svg &&
@@ -166,7 +179,10 @@ void require_together(const GivenNames& given) {
       {{"--first-height", "--total-thickness", "--growth"}, NeedsAnyOf, {"--layers"}},
       {{"--structured", "--fan-angle"}, NeedsAnyOf, {"--layers", "--heights"}},
       {{"--structured"}, Excludes, {"--fan-angle", "--fill"}},
-      {{"--fill"}, NeedsAnyOf, {"--layers", "--heights"}},
+      {{"--fill", "--patch"}, NeedsAnyOf, {"--layers", "--heights"}},
+      {{"--case"}, NeedsAnyOf, {"--fill"}},
+      {{"--case"}, NeedsOneOf, {"--viscosity", "--reynolds"}},
+      {{"--speed", "--direction", "--viscosity", "--reynolds", "--length"}, NeedsAnyOf, {"--case"}},
       {{"--farfield", "--fill-with", "--caps", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds", "--layers-anyway"},
        NeedsAnyOf,
        {"--fill"}},

@@ -10,6 +10,7 @@
 #include "request/units.h"
 #include "vdb_offset/distances.h"
 #include "vdb_offset/fill.h"
+#include "vdb_offset/io/case_file.h"
 #include "vdb_offset/io/derived_file.h"
 #include "vdb_offset/io/mesh_file.h"
 #include "vdb_offset/offset.h"
@@ -77,6 +78,19 @@ struct FillRequest {
   bool layers_anyway = false;  ///< Where the rest cannot be filled, write the layers alone.
 };
 
+/// What a patch of a mesh of cells is to be called, and what it is.
+struct PatchRequest {
+  std::string patch, name;
+  std::optional<BoundaryPatch::Kind> kind;
+};
+
+/// A case for a solver beside the mesh of cells.
+struct CaseRequest {
+  std::string folder;  ///< Empty: none is asked for.
+  io::Flow flow;       ///< Its viscosity may follow from the next.
+  std::optional<double> viscosity, reynolds, length;
+};
+
 /// The iso-surface at the distance, asked for with --mode iso.
 struct IsoRequest {
   std::optional<double> adaptivity;
@@ -109,6 +123,8 @@ struct Request {
   bool shell = false;
   std::optional<LayersRequest> layers;
   std::optional<FillRequest> fill;
+  std::vector<PatchRequest> patches;
+  CaseRequest solver_case;
   std::optional<IsoRequest> iso;
   std::optional<ToleranceRequest> tolerance;
 

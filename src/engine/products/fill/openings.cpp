@@ -23,17 +23,17 @@ using Edge = std::array<Index, 2>;
 // caps would lean visibly towards the layers' sides.
 constexpr double kOffPlane = 1e-2;
 // Openings are in one plane if these are so near each other, as a share of the larger one's size.
-constexpr double kOnePlane = 1e-6;
+constexpr double kSamePlane = 1e-6;
 
 /// The middle of edges, weighted by their lengths, and their normal: right-handed, as long as twice the area that they
 /// enclose.
-struct Extent {
+struct EdgeExtent {
   Vec3d middle{0.0}, normal{0.0};
   double size = 0;  // the largest distance from the middle
 };
 
-Extent extent_of(std::span<const Vec3d> points, std::span<const Edge> edges) {
-  Extent extent;
+EdgeExtent edge_extent(std::span<const Vec3d> points, std::span<const Edge> edges) {
+  EdgeExtent extent;
   double weights = 0;
   for (const auto& [a, b] : edges) {
     const double length = (points[a] - points[b]).length();
@@ -50,9 +50,9 @@ Extent extent_of(std::span<const Vec3d> points, std::span<const Edge> edges) {
 
 /// A plane through edges. Where they are all at one place along an axis, it is exactly at right angles to that.
 OpenPlane plane_of(std::span<const Vec3d> points, std::vector<Edge> edges) {
-  const Extent extent = extent_of(points, edges);
+  const EdgeExtent extent = edge_extent(points, edges);
   OpenPlane plane{extent.middle, extent.normal, std::move(edges)};
-  if (!(plane.normal.length() > kOnePlane * extent.size * extent.size))
+  if (!(plane.normal.length() > kSamePlane * extent.size * extent.size))
     throw InvalidInput(fmt::format("fill: expected openings around an area, got one without at ({:.6g}, {:.6g}, {:.6g})",
                                    extent.middle[0], extent.middle[1], extent.middle[2]));
   plane.normal.normalize();
@@ -175,9 +175,9 @@ std::vector<OpenPlane> open_planes(std::span<const Vec3d> points, std::span<cons
   for (auto& [loop, its_edges] : of_loop) {
     OpenPlane plane = plane_of(points, std::move(its_edges));
     const auto is_same = [&](const OpenPlane& other) {
-      const double size = std::max(extent_of(points, plane.edges).size, extent_of(points, other.edges).size);
-      return plane.normal.cross(other.normal).length() < kOnePlane &&
-             std::abs((plane.origin - other.origin).dot(other.normal)) < kOnePlane * size;
+      const double size = std::max(edge_extent(points, plane.edges).size, edge_extent(points, other.edges).size);
+      return plane.normal.cross(other.normal).length() < kSamePlane &&
+             std::abs((plane.origin - other.origin).dot(other.normal)) < kSamePlane * size;
     };
     const auto known = std::ranges::find_if(planes, is_same);
     if (known == planes.end()) planes.push_back(std::move(plane));
@@ -185,7 +185,7 @@ std::vector<OpenPlane> open_planes(std::span<const Vec3d> points, std::span<cons
   }
   // The larger ones of several loops in a plane are around the others, and say what is outside.
   for (OpenPlane& plane : planes)
-    if (extent_of(points, plane.edges).normal.dot(plane.normal) < 0) plane.normal = -plane.normal;
+    if (edge_extent(points, plane.edges).normal.dot(plane.normal) < 0) plane.normal = -plane.normal;
   return planes;
 }
 

@@ -23,7 +23,7 @@ using Index = std::uint32_t;
 constexpr double kHeight = 0.35, kMostHeight = 0.7;
 constexpr double kShareOfAngle = 1.0 / 3;
 // Each halves what crosses; 2^-8 of the height is a pyramid that no solver takes.
-constexpr int kRounds = 8;
+constexpr int kHalvings = 8;
 
 struct Base {
   Vec3d middle{0.0}, normal{0.0};  // the normal of unit length, towards what is left
@@ -39,7 +39,7 @@ class Pyramids {
     for (const QuadOfFront& quad : quads_) bases_.push_back(base_of(quad));
     lower_by_angles();
     make();
-    for (int round = 0; round < kRounds; ++round)
+    for (int round = 0; round < kHalvings; ++round)
       if (!lower_crossing()) return;
     require_sound(volume_.points, front_.triangles);
   }

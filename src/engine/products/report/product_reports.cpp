@@ -42,4 +42,28 @@ Json cad_json(const CadFileFacts& cad) {
           {"gaps", cad.gaps}};
 }
 
+Json spread_json(const Spread& spread) {
+  return {{"least", spread.least},
+          {"quantile_01", spread.quantile_01},
+          {"quantile_05", spread.quantile_05},
+          {"median", spread.median},
+          {"quantile_95", spread.quantile_95},
+          {"quantile_99", spread.quantile_99},
+          {"most", spread.most},
+          {"mean", spread.mean}};
+}
+
+Json fill_json(const FillReport& fill) {
+  return {{"tetrahedra", fill.tetrahedra},
+          {"triangles", fill.triangles},
+          {"pyramids", fill.pyramids},
+          {"split_cells", fill.split_cells},
+          {"added_points", fill.added_points},
+          {"front_faces", fill.front},
+          {"volume", fill.volume},
+          {"scaled_jacobian", spread_json(fill.scaled_jacobian)},
+          {"volume_jump", spread_json(fill.jump)},
+          {"seconds", fill.seconds}};
+}
+
 }  // namespace vdb_offset

@@ -210,17 +210,6 @@ Json miters_json(const MiterFacts& miters) {
           {"unproven", miters.unproven},     {"taken_back", miters.taken_back}, {"worst_excess", miters.excess}};
 }
 
-Json spread_json(const Spread& spread) {
-  return {{"least", spread.least},
-          {"quantile_01", spread.quantile_01},
-          {"quantile_05", spread.quantile_05},
-          {"median", spread.median},
-          {"quantile_95", spread.quantile_95},
-          {"quantile_99", spread.quantile_99},
-          {"most", spread.most},
-          {"mean", spread.mean}};
-}
-
 Json figures_json(const LayerFigures& figures) {
   Json faces = Json::object(), cells = Json::object();
   for (std::size_t r = 0; r < kFaceRoleCount; ++r) faces[name(static_cast<FaceRole>(r))] = figures.faces_by_role[r];
@@ -267,17 +256,7 @@ Json layers_json(const LayerReport& layers) {
                      {"split_points", layers.split_points},
                      {"turned_faces", layers.turned_faces}};
   report["inverted_block_cells"] = layers.inverted_block_cells;
-  if (layers.fill)
-    report["fill"] = {{"tetrahedra", layers.fill->tetrahedra},
-                      {"triangles", layers.fill->triangles},
-                      {"pyramids", layers.fill->pyramids},
-                      {"split_cells", layers.fill->split_cells},
-                      {"added_points", layers.fill->added_points},
-                      {"front_triangles", layers.fill->front},
-                      {"volume", layers.fill->volume},
-                      {"scaled_jacobian", spread_json(layers.fill->scaled_jacobian)},
-                      {"volume_jump", spread_json(layers.fill->jump)},
-                      {"seconds", layers.fill->seconds}};
+  if (layers.fill) report["fill"] = fill_json(*layers.fill);
   if (layers.foam)
     report["openfoam"] = {{"wrong_faces", layers.foam->wrong_faces},
                           {"non_orthogonality", layers.foam->non_orthogonality},
