@@ -30,7 +30,7 @@ struct FillDomain {
 
 /// What a filler made.
 struct FilledDomain {
-  std::vector<Vec3d> added;                        ///< Points that it added, numbered behind those of the domain.
+  std::vector<Vec3d> added;                         ///< Points that it added, numbered behind those of the domain.
   std::vector<std::array<std::uint32_t, 4>> cells;  ///< The normal of the first three points to the fourth.
 };
 
@@ -71,19 +71,20 @@ struct FillOptions {
 };
 
 /// Fills the rest of the domain that layers begin with tetrahedra: the inside of a closed surface with layers inside of
-/// it; or the outside of bodies, out to the farfield. Faces of the wall without layers are kept as they are. Flat openings
-/// of the surface are covered with triangles: inside, as in a pipe, by caps, which join the patches of sides around them;
-/// outside, as around half a body on a plane, out to the farfield, by planes of symmetry. The mesh has the points and
-/// cells of the layers in their order, then pyramids, then tetrahedra. The patch "outer" is gone; "farfield" has the
-/// triangles of the farfield, if there is one, and "symmetry" those of a plane of symmetry, with the layers' sides there.
+/// it; or the outside of bodies, out to the farfield. Faces of the wall without layers are kept as they are. Flat
+/// openings of the surface are covered with triangles: inside, as in a pipe, by caps, which join the patches of sides
+/// around them; outside, as around half a body on a plane, out to the farfield, by planes of symmetry. The mesh has the
+/// points and cells of the layers in their order, then pyramids, then tetrahedra. The patch "outer" is gone; "farfield"
+/// has the triangles of the farfield, if there is one, and "symmetry" those of a plane of symmetry, with the layers'
+/// sides there.
 ///
-/// It is proven that each face of the domain is a face of the mesh once, that each inner face belongs to two cells, that
-/// all new cells have volumes above 0, by exact predicates, and that these sum up to the domain's volume, to 1e-9.
+/// It is proven that each face of the domain is a face of the mesh once, that each inner face belongs to two cells,
+/// that all new cells have volumes above 0, by exact predicates, and that these sum up to the domain's volume, to 1e-9.
 /// \param mesh the wall that the layers were grown on, with `layers`, the facts about their `cells`, and these
 /// themselves, as make_cells() gives them
 /// \param names of the wall's faces, as for make_cells()
-/// \throw InvalidInput for openings that are not flat, and for those of bodies that are not in one plane or two parallel
-/// ones; FillFailed where it crosses itself, and where the filler fails
+/// \throw InvalidInput for openings that are not flat, and for those of bodies that are not in one plane or two
+/// parallel ones; FillFailed where it crosses itself, and where the filler fails
 VDB_OFFSET_API VolumeMesh fill_volume(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts,
                                       const WallNames& names, VolumeMesh cells, const FillOptions& options,
                                       const Filler& filler, FillReport* report = nullptr);

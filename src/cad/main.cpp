@@ -12,10 +12,10 @@
 #include <cstdio>
 #include <new>
 
+#include "ground/process/guard.h"
 #include "ground/process/message_channel.h"
 #include "ground/process/progress.h"
 #include "vdb_offset/api.h"
-#include "ground/process/guard.h"
 #include "worker/requests.h"
 
 namespace vdb_offset::cad {

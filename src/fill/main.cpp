@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program that fills volumes by Netgen, or by TetGen. Programs of the project start it, hand it one domain and get its cells
-// (messages/fill_messages.h); by hand
-// it is of no use.
+// The program that fills volumes by Netgen, or by TetGen. Programs of the project start it, hand it one domain and get
+// its cells (messages/fill_messages.h); by hand it is of no use.
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -13,8 +13,8 @@ namespace nglib {
 namespace vdb_offset {
 namespace {
 
-// Rounds of moving points and swapping faces. Measured on the layers of a sphere: none leaves cells of a scaled Jacobian
-// of 0.004, one 0.24, three 0.29, for 0.4, 0.6 and 1.3 s.
+// Rounds of moving points and swapping faces. Measured on the layers of a sphere: none leaves cells of a scaled
+// Jacobian of 0.004, one 0.24, three 0.29, for 0.4, 0.6 and 1.3 s.
 constexpr int kOptimisingSteps = 3;
 
 nglib::Ng_Meshing_Parameters parameters_of(const FillDomain& domain) {

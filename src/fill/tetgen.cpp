@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen is a program of its own, which this one starts: it gets the domain as a text and leaves its points and cells as
-// texts, all in one folder. Where it is not told of a point in each hole it fills these as well, so that only the cells
-// count which lie on the domain's side of its border.
+// TetGen is a program of its own, which this one starts: it gets the domain as a text and leaves its points and cells
+// as texts, all in one folder. Where it is not told of a point in each hole it fills these as well, so that only the
+// cells count which lie on the domain's side of its border.
 #include "tetgen.h"
 
 #include <fcntl.h>
@@ -156,8 +156,8 @@ class CellsInside {
 }  // namespace
 
 FilledDomain fill_by_tetgen(const FillDomain& domain, const std::string& folder, std::uint64_t most_memory) {
-  // Y keeps the border. Radii of at most 1.4 edges and angles of at least 10 degrees: 1.2 and 14 take twice as many cells.
-  // T: the default, 1e-8 of the whole domain, joins points of fine walls that have a farfield.
+  // Y keeps the border. Radii of at most 1.4 edges and angles of at least 10 degrees: 1.2 and 14 take twice as many
+  // cells. T: the default, 1e-8 of the whole domain, joins points of fine walls that have a farfield.
   const double largest = domain.longest * domain.longest * domain.longest / (6 * std::numbers::sqrt2);
   const std::string options = fmt::format("-pYq1.4/10a{}T1e-14QC", largest), path = folder + "/domain";
   write_domain(domain, path + ".poly");

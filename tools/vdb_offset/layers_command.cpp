@@ -119,7 +119,8 @@ void write_surfaces(const Job& job, const Grown& grown) {
 
 FillOptions fill_options(const Job& job, PolygonView mesh, ProgressBar& bar) {
   const FillRequest& request = *job.request.fill;
-  FillOptions options{.farfield = request.farfield, .growth = request.growth, .caps = request.caps, .progress = bar.callback()};
+  FillOptions options{
+      .farfield = request.farfield, .growth = request.growth, .caps = request.caps, .progress = bar.callback()};
   if (job.source.farfield) options.farfield.surface = *job.source.farfield;
   if (request.longest)
     options.longest = request.longest->in_world_units(request.longest->percent ? used_diagonal(mesh) : 0);
@@ -132,7 +133,8 @@ FillOptions fill_options(const Job& job, PolygonView mesh, ProgressBar& bar) {
 void fill_cells(const Job& job, Grown& grown, const FillOptions& options) {
   FillReport& report = grown.report.fill.emplace();
   if (job.curves()) {
-    grown.on_curves = fill_plane(make_curve_cells(grown.mesh(job.source), grown.layers), grown.layers, options, &report);
+    grown.on_curves =
+        fill_plane(make_curve_cells(grown.mesh(job.source), grown.layers), grown.layers, options, &report);
     return;
   }
   const FillRequest& request = *job.request.fill;

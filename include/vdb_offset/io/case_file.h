@@ -16,9 +16,9 @@ struct Flow {
   Vec3d direction{1, 0, 0};  ///< Of the flow far away, any length.
   double speed = 1;          ///< Far away, and into inlets.
   double viscosity = 0;      ///< Kinematic, > 0.
-  double length = 1;         ///< What coefficients of forces refer to, with its square, or its product with the thickness
-                             ///< of a mesh that is one cell thick.
-  double thickness = 0;      ///< Of such a mesh; 0: it is another.
+  double length = 1;     ///< What coefficients of forces refer to, with its square, or its product with the thickness
+                         ///< of a mesh that is one cell thick.
+  double thickness = 0;  ///< Of such a mesh; 0: it is another.
 };
 
 /// A patch of the mesh that a case is for.
@@ -28,10 +28,10 @@ struct CasePatch {
 };
 
 /// Writes a case for OpenFOAM's simpleFoam, steady and laminar, into a folder that has the mesh in constant/polyMesh:
-/// fields with conditions by the patches' kinds, schemes and solvers that suit layers and tetrahedra, forces on the walls,
-/// and a README of how to run it. Files that are there stay as they are. Returns the names of those that are written.
-/// \throw InvalidInput for a viscosity that is not above 0, and for patches of kind Side, which say nothing of the flow;
-/// WriteError
+/// fields with conditions by the patches' kinds, schemes and solvers that suit layers and tetrahedra, forces on the
+/// walls, and a README of how to run it. Files that are there stay as they are. Returns the names of those that are
+/// written. \throw InvalidInput for a viscosity that is not above 0, and for patches of kind Side, which say nothing of
+/// the flow; WriteError
 VDB_OFFSET_API std::vector<std::string> write_openfoam_case(const std::string& folder,
                                                             std::span<const CasePatch> patches, const Flow& flow);
 

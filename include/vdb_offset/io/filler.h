@@ -23,8 +23,8 @@ struct FillerLimits {
 VDB_OFFSET_API Filler netgen_filler(FillerLimits limits);
 
 /// TetGen (Si, TetGen, a Delaunay-based quality tetrahedral mesh generator, 2015), the program tetgen, as far as it is
-/// installed: 10 to 30 times as fast as Netgen, with worse cells. Of the domain's sizes it uses the longest edge alone. As
-/// netgen_filler(), and ReadError where tetgen is not installed.
+/// installed: 10 to 30 times as fast as Netgen, with worse cells. Of the domain's sizes it uses the longest edge alone.
+/// As netgen_filler(), and ReadError where tetgen is not installed.
 VDB_OFFSET_API Filler tetgen_filler(FillerLimits limits);
 
 }  // namespace vdb_offset::io

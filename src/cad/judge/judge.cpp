@@ -22,9 +22,9 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "ground/process/progress.h"
 #include "judge/edge_points.h"
 #include "judge/soup.h"
-#include "ground/process/progress.h"
 #include "offset/offset_surface.h"
 
 namespace vdb_offset::cad {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "messages/cad_mesh.h"
 #include "ground/process/message_channel.h"
 #include "ground/process/packing.h"
+#include "messages/cad_mesh.h"
 
 namespace vdb_offset::io {
 
@@ -27,12 +27,13 @@ enum class CadRequest : std::uint32_t {
 
 /// What the worker says.
 enum class CadReply : std::uint32_t {
-  Version = 1,      ///< A text.
-  Done = 2,         ///< What the request's kind says.
-  InvalidFile = 3,  ///< A text: `expected X, got Y`.
-  OutOfMemory = 4,  ///< A text, as before.
-  Failed = 5,       ///< A text, as before: the request, and not the file, is at fault.
-  Progress = kProgressMessage,  ///< A double: the share of the request that is done. Any number of them comes before another reply.
+  Version = 1,                  ///< A text.
+  Done = 2,                     ///< What the request's kind says.
+  InvalidFile = 3,              ///< A text: `expected X, got Y`.
+  OutOfMemory = 4,              ///< A text, as before.
+  Failed = 5,                   ///< A text, as before: the request, and not the file, is at fault.
+  Progress = kProgressMessage,  ///< A double: the share of the request that is done. Any number of them comes before
+                                ///< another reply.
 };
 
 /// The file to be read, and how.

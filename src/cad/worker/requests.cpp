@@ -5,9 +5,9 @@
 #include <cmath>
 #include <new>
 
+#include "ground/process/memory_limit.h"
 #include "ground/process/progress.h"
 #include "tessellate/tessellate.h"
-#include "ground/process/memory_limit.h"
 #include "write/write_offset.h"
 
 namespace vdb_offset::cad {
@@ -106,8 +106,7 @@ std::string Requests::answer(io::CadRequest kind, std::string_view payload) {
   if (kind == io::CadRequest::Distances) return distances(payload);
   if (kind == io::CadRequest::Offset) return offset(payload);
   if (kind == io::CadRequest::Write) return io::pack(write_offset(*model_, io::unpack_write(payload)));
-  throw BadMessage("expected a request that is known, got number " +
-                       std::to_string(static_cast<std::uint32_t>(kind)));
+  throw BadMessage("expected a request that is known, got number " + std::to_string(static_cast<std::uint32_t>(kind)));
 }
 
 }  // namespace vdb_offset::cad

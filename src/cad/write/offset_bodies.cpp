@@ -13,8 +13,8 @@
 #include <optional>
 #include <utility>
 
-#include "hold/hold_back.h"
 #include "ground/process/progress.h"
+#include "hold/hold_back.h"
 #include "vdb_offset/run.h"
 #include "write/face_distances.h"
 

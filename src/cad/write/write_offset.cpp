@@ -11,11 +11,11 @@
 #include <cmath>
 #include <optional>
 
+#include "ground/process/progress.h"
 #include "judge/clearance.h"
 #include "judge/judge.h"
 #include "judge/parameters.h"
 #include "judge/soup.h"
-#include "ground/process/progress.h"
 #include "offset/offset_solid.h"
 #include "trim/trim_offset.h"
 #include "write/assemblies.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Has Netgen or TetGen fill a domain, by a program of its own: it is started for one domain, has to be of this version, gets the
-// domain as a message and answers with one. Whatever it does else becomes an error.
+// Has Netgen or TetGen fill a domain, by a program of its own: it is started for one domain, has to be of this version,
+// gets the domain as a message and answers with one. Whatever it does else becomes an error.
 #include <fmt/format.h>
 #include <sys/wait.h>
 
@@ -60,7 +60,7 @@ class FillerRun {
     constexpr double kForever = 1e8;  // seconds, three years; more would not be counted
     if (limits.seconds < kForever)
       until_ = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                                       std::chrono::duration<double>(limits.seconds));
+                                                      std::chrono::duration<double>(limits.seconds));
   }
 
   FilledDomain fill(const FillDomain& domain) {
@@ -75,7 +75,8 @@ class FillerRun {
         case FillReply::Done:
           return unpack_filled(reply.payload);
         case FillReply::Failed:
-          throw FillFailed(fmt::format("fill: expected a domain that {} can fill, got {}", filler_.name, reply.payload));
+          throw FillFailed(
+              fmt::format("fill: expected a domain that {} can fill, got {}", filler_.name, reply.payload));
         case FillReply::Missing:
           throw ReadError("fill: expected the program that fills to be installed, got " + reply.payload);
         case FillReply::OutOfMemory:
@@ -87,9 +88,10 @@ class FillerRun {
       fail_by_end();
     } catch (const TooLate&) {
       process_.reset();
-      throw FillFailed(fmt::format("fill: expected a domain that {} fills within {} s, got one that takes longer "
-                                   "(--fill-seconds)",
-                                   filler_.name, limits_.seconds));
+      throw FillFailed(
+          fmt::format("fill: expected a domain that {} fills within {} s, got one that takes longer "
+                      "(--fill-seconds)",
+                      filler_.name, limits_.seconds));
     } catch (const BadMessage& bad) {
       throw FillFailed(std::string("fill: expected an answer of ") + kFillProgram + ", got " + bad.what());
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of a case, as OpenFOAM's user guide describes them. Gradients by least squares and corrected normal gradients
-// are what cells need whose neighbours lie aslant: with limited ones, the pressure drop of a pipe was 22 to 34 % off.
+// The files of a case, as OpenFOAM's user guide describes them. Gradients by least squares and corrected normal
+// gradients are what cells need whose neighbours lie aslant: with limited ones, the pressure drop of a pipe was 22 to
+// 34 % off.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -50,8 +51,7 @@ class OpenFoamCase {
   }
 
   std::string pressure() const {
-    return case_header("volScalarField", "0", "p") +
-           "dimensions      [0 2 -2 0 0 0 0];\ninternalField   uniform 0;\n" +
+    return case_header("volScalarField", "0", "p") + "dimensions      [0 2 -2 0 0 0 0];\ninternalField   uniform 0;\n" +
            conditions([](Kind kind) -> std::string {
              switch (kind) {
                case Kind::Wall:
@@ -115,7 +115,8 @@ class OpenFoamCase {
            "        tolerance       1e-10;\n        relTol          0.05;\n    }\n}\n\n"
            "potentialFlow   { nNonOrthogonalCorrectors 10; }\n\nSIMPLE\n{\n    nNonOrthogonalCorrectors 1;\n"
            "    consistent      yes;\n    pRefCell        0;\n    pRefValue       0;\n"
-           "    residualControl { p 1e-6; U 1e-6; }\n}\n\nrelaxationFactors\n{\n    fields          { p 0.7; }\n    equations "
+           "    residualControl { p 1e-6; U 1e-6; }\n}\n\nrelaxationFactors\n{\n    fields          { p 0.7; }\n    "
+           "equations "
            "      { U 0.8; }\n}\n";
   }
 
@@ -180,9 +181,10 @@ std::vector<std::string> write_openfoam_case(const std::string& folder, std::spa
     throw InvalidInput("case: expected a speed, a length and a viscosity above 0");
   for (const CasePatch& patch : patches)
     if (patch.kind == Kind::Side)
-      throw InvalidInput(fmt::format("case: expected to know what {0} is (--patch {0}=inlet:inlet, or outlet, wall, "
-                                     "symmetry, farfield)",
-                                     patch.name));
+      throw InvalidInput(
+          fmt::format("case: expected to know what {0} is (--patch {0}=inlet:inlet, or outlet, wall, "
+                      "symmetry, farfield)",
+                      patch.name));
   const OpenFoamCase texts(patches, flow);
   const std::pair<const char*, std::string> files[] = {{"0/U", texts.velocity()},
                                                        {"0/p", texts.pressure()},

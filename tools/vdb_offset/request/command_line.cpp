@@ -27,7 +27,7 @@ namespace {
 // Options whose values are lengths. The unit of the first of these that has one is that of what is printed.
 constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",    "inner",     "clearance",
                                     "first-height", "total-thickness", "voxel-size",    "tolerance", "weld",
-                                    "flatten",      "deflection",      "fit-tolerance", "blend", "fill-max"};
+                                    "flatten",      "deflection",      "fit-tolerance", "blend",     "fill-max"};
 
 // What other programs call it, and the option that is meant.
 constexpr std::pair<const char*, const char*> kCalledOtherwise[] = {{"--offset", "--distance"},

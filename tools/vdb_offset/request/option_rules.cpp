@@ -106,8 +106,8 @@ void require_case(const Request& request) {
   if (folder.empty()) return;
   const auto mesh = std::filesystem::path(request.output).lexically_normal(),
              expected = (std::filesystem::path(folder) / "constant" / "polyMesh").lexically_normal();
-  require(mesh == expected || mesh == expected / "",
-          fmt::format("{}: expected {} as the OUTPUT of --case openfoam:{}", request.output, expected.string(), folder));
+  require(mesh == expected || mesh == expected / "", fmt::format("{}: expected {} as the OUTPUT of --case openfoam:{}",
+                                                                 request.output, expected.string(), folder));
 }
 
 void require_endings(const Request& request) {
@@ -183,7 +183,8 @@ void require_together(const GivenNames& given) {
       {{"--case"}, NeedsAnyOf, {"--fill"}},
       {{"--case"}, NeedsOneOf, {"--viscosity", "--reynolds"}},
       {{"--speed", "--direction", "--viscosity", "--reynolds", "--length"}, NeedsAnyOf, {"--case"}},
-      {{"--farfield", "--fill-with", "--caps", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds", "--layers-anyway"},
+      {{"--farfield", "--fill-with", "--caps", "--fill-growth", "--fill-max", "--fill-quads", "--fill-seconds",
+        "--layers-anyway"},
        NeedsAnyOf,
        {"--fill"}},
       {{"--layers"}, NeedsOneOf, {"--first-height", "--total-thickness", "--heights"}},

@@ -306,10 +306,11 @@ void add_fill(const FillReport& fill, Summary& made) {
   // OpenFOAM warns of interpolation weights below 0.05, which a jump of about 20 makes.
   constexpr double kMostJump = 20;
   if (fill.jump.quantile_95 > kMostJump)
-    made.remarks.add(Gravity::Off,
-                     fmt::format("from the last layer to the tetrahedra, volumes change {:.3g} times on average, and {:.3g} "
-                                 "times at 5 % of the faces. Use more layers, which grow until they are as high as wide",
-                                 fill.jump.median, fill.jump.quantile_95));
+    made.remarks.add(
+        Gravity::Off,
+        fmt::format("from the last layer to the tetrahedra, volumes change {:.3g} times on average, and {:.3g} "
+                    "times at 5 % of the faces. Use more layers, which grow until they are as high as wide",
+                    fill.jump.median, fill.jump.quantile_95));
 }
 
 }  // namespace

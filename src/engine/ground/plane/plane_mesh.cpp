@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points are added where a triangle is too large for its place, one beside an edge whose other side is done: so that the
-// new triangle is as round as it can be and of the size that is asked for there (Rebay, Efficient unstructured mesh
-// generation by means of Delaunay triangulation and Bowyer-Watson algorithm, 1993). What is left over where fronts met is
-// mended by moving points and turning edges.
+// Points are added where a triangle is too large for its place, one beside an edge whose other side is done: so that
+// the new triangle is as round as it can be and of the size that is asked for there (Rebay, Efficient unstructured mesh
+// generation by means of Delaunay triangulation and Bowyer-Watson algorithm, 1993). What is left over where fronts met
+// is mended by moving points and turning edges.
 #include "ground/plane/plane_mesh.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ using Side = Triangulation::Side;
 
 // A triangle is done if the radius of its circle is at most so many times that of a regular one of the size asked for.
 constexpr double kDone = 1.35;
-// A point is left out that would come nearer to another, as a share of the size asked for there; or would see a segment of
-// the boundary under a larger angle, by its cosine.
+// A point is left out that would come nearer to another, as a share of the size asked for there; or would see a segment
+// of the boundary under a larger angle, by its cosine.
 constexpr double kNearest = 0.6, kMostAngle = -0.35;
 // Rounds of moving points and turning edges.
 constexpr int kRounds = 8;
@@ -91,7 +91,8 @@ class PlaneMesher {
   Circle circle(Index t) const {
     const Vec2d &a = mesh_.corner(t, 0), b = mesh_.corner(t, 1) - a, c = mesh_.corner(t, 2) - a;
     const double twice = 2 * (b[0] * c[1] - b[1] * c[0]);
-    const Vec2d centre = Vec2d(c[1] * b.lengthSqr() - b[1] * c.lengthSqr(), b[0] * c.lengthSqr() - c[0] * b.lengthSqr()) / twice;
+    const Vec2d centre =
+        Vec2d(c[1] * b.lengthSqr() - b[1] * c.lengthSqr(), b[0] * c.lengthSqr() - c[0] * b.lengthSqr()) / twice;
     return {a + centre, centre.length()};
   }
 
@@ -202,7 +203,8 @@ class PlaneMesher {
           const Index u = mesh_.triangles()[t].beside[k];
           if (u == kNone || u < t) continue;
           const std::size_t m = mesh_.corner_towards(u, t);
-          const Vec2d &a = mesh_.corner(t, k), &b = mesh_.corner(t, k + 1), &c = mesh_.corner(t, k + 2), &d = mesh_.corner(u, m);
+          const Vec2d &a = mesh_.corner(t, k), &b = mesh_.corner(t, k + 1), &c = mesh_.corner(t, k + 2),
+                      &d = mesh_.corner(u, m);
           const double before = std::min(roundness_of(t), roundness_of(u)),
                        after = std::min(roundness(a, b, d), roundness(a, d, c));
           // By more than rounding, or two would be turned for ever.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points are put in one by one, in a big triangle around all of them: the triangles whose circles hold a point make room
-// for those between the point and the cavity's sides (Bowyer, Computing Dirichlet tessellations, 1981; Watson, 1981). A
-// segment that is missing is put in by dropping all triangles that it crosses, and triangulating what lies on each side
-// of it (Anglada, An improved incremental algorithm for constructing restricted Delaunay triangulations, 1997). All
-// decisions are exact.
+// Points are put in one by one, in a big triangle around all of them: the triangles whose circles hold a point make
+// room for those between the point and the cavity's sides (Bowyer, Computing Dirichlet tessellations, 1981; Watson,
+// 1981). A segment that is missing is put in by dropping all triangles that it crosses, and triangulating what lies on
+// each side of it (Anglada, An improved incremental algorithm for constructing restricted Delaunay triangulations,
+// 1997). All decisions are exact.
 #include "ground/plane/triangulation.h"
 
 #include <fmt/format.h>
@@ -51,7 +51,8 @@ Triangulation::Triangulation(std::span<const Vec2d> points) : points_(points.beg
   const Vec2d middle = (lowest + highest) / 2;
   const double far = kFar * std::max({highest[0] - lowest[0], highest[1] - lowest[1], 1e-300});
   const auto first = static_cast<Index>(points_.size());
-  points_.insert(points_.end(), {middle + Vec2d(-2 * far, -far), middle + Vec2d(2 * far, -far), middle + Vec2d(0, 2 * far)});
+  points_.insert(points_.end(),
+                 {middle + Vec2d(-2 * far, -far), middle + Vec2d(2 * far, -far), middle + Vec2d(0, 2 * far)});
   triangles_ = {{{first, first + 1, first + 2}, {kNone, kNone, kNone}}};
   at_.assign(points_.size(), 0);
   starting_.assign(points_.size(), kNone);
@@ -128,7 +129,8 @@ std::vector<Index> Triangulation::put(Index p, const Cavity& cavity) {
   };
   std::vector<Outline> outline;
   for (const auto& [t, k] : cavity.sides)
-    outline.push_back({triangles_[t].corners[(k + 1) % 3], triangles_[t].corners[(k + 2) % 3], triangles_[t].beside[k]});
+    outline.push_back(
+        {triangles_[t].corners[(k + 1) % 3], triangles_[t].corners[(k + 2) % 3], triangles_[t].beside[k]});
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const auto& [from, to, behind] = outline[i];
     triangles_[around[i]] = {{from, to, p}, {kNone, kNone, behind}};
@@ -160,8 +162,8 @@ std::size_t Triangulation::corner_towards(Index triangle, Index other) const {
   return static_cast<std::size_t>(std::find(beside.begin(), beside.end(), other) - beside.begin());
 }
 
-/// Calls visit(triangle, corner of the point) for each triangle at a point, until it returns true. \pre none of them is at
-/// the boundary
+/// Calls visit(triangle, corner of the point) for each triangle at a point, until it returns true. \pre none of them is
+/// at the boundary
 template <class Visit>
 void Triangulation::turn_around(Index point, Visit&& visit) const {
   Index t = at_[point];
@@ -180,7 +182,8 @@ void Triangulation::enforce(Index from, Index to) {
     const Index a = triangles_[t].corners[(k + 1) % 3], b = triangles_[t].corners[(k + 2) % 3];
     is_there = a == to || b == to;
     if (is_there) return true;
-    const int of_a = side_of(points_[from], points_[to], points_[a]), of_b = side_of(points_[from], points_[to], points_[b]);
+    const int of_a = side_of(points_[from], points_[to], points_[a]),
+              of_b = side_of(points_[from], points_[to], points_[b]);
     if (of_a < 0 && of_b > 0) entry = {t, static_cast<Index>(k)};
     else if (of_a == 0 && (points_[a] - points_[from]).dot(points_[to] - points_[from]) > 0)
       fail_at(points_[a], "segments that go through no other point, got one that does");
@@ -288,8 +291,8 @@ void Triangulation::drop_outside(std::span<const std::array<Index, 2>> segments)
 void Triangulation::flip(const Side& side) {
   const Index t = side.triangle, u = triangles_[t].beside[side.corner];
   const std::size_t k = side.corner, m = corner_towards(u, t);
-  const Index a = triangles_[t].corners[k], b = triangles_[t].corners[(k + 1) % 3], c = triangles_[t].corners[(k + 2) % 3],
-              d = triangles_[u].corners[m];
+  const Index a = triangles_[t].corners[k], b = triangles_[t].corners[(k + 1) % 3],
+              c = triangles_[t].corners[(k + 2) % 3], d = triangles_[u].corners[m];
   const Index at_ab = triangles_[t].beside[(k + 2) % 3], at_ca = triangles_[t].beside[(k + 1) % 3],
               at_bd = triangles_[u].beside[(m + 1) % 3], at_dc = triangles_[u].beside[(m + 2) % 3];
   const auto relink = [&](Index of, Index from, Index to) {

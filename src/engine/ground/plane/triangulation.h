@@ -66,8 +66,8 @@ class Triangulation {
 
   std::vector<Vec2d> points_;
   std::vector<Triangle> triangles_;
-  std::vector<Index> at_;       // of each point: a triangle there
-  std::vector<Index> stamp_;    // of each triangle: the last cavity that looked at it
+  std::vector<Index> at_;        // of each point: a triangle there
+  std::vector<Index> stamp_;     // of each triangle: the last cavity that looked at it
   std::vector<Index> starting_;  // of each point: a new triangle with a side from there, for put()
   Index cavities_ = 0;
   Index last_ = 0;

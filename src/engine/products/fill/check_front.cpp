@@ -67,8 +67,8 @@ bool is_enclosed(std::span<const Vec3d> points, std::span<const FrontTriangle> f
   std::vector<double> volume(points.size(), 0);
   for (const FrontTriangle& triangle : front)
     volume[shells.first(triangle.corners[0])] += six_volumes_below(points, triangle, points[front[0].corners[0]]);
-  const auto largest = std::max_element(volume.begin(), volume.end(),
-                                        [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto largest =
+      std::max_element(volume.begin(), volume.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   return largest != volume.end() && *largest > 0;
 }
 
@@ -81,17 +81,17 @@ void require_sound(std::span<const Vec3d> points, std::span<const FrontTriangle>
   for (std::size_t t = 0; t < front.size(); ++t) {
     const auto& [a, b, c] = front[t].corners;
     if (has_no_area({points[a], points[b], points[c]}))
-      throw FillFailed(
-          fmt::format("fill: expected faces with an area, got one without at {} (layers have no height there: remesh the "
-                      "wall, whose faces have none)",
-                      place(t)));
+      throw FillFailed(fmt::format(
+          "fill: expected faces with an area, got one without at {} (layers have no height there: remesh the "
+          "wall, whose faces have none)",
+          place(t)));
   }
   const std::vector<TrianglePair> crossings = crossings_of(points, front);
   if (crossings.empty()) return;
-  throw FillFailed(
-      fmt::format("fill: expected a domain whose border does not cross itself, got {} pairs of faces that do, the first "
-                  "at {} and {} (where the input itself does so, --mode iso makes one that does not)",
-                  crossings.size(), place(crossings[0].first), place(crossings[0].second)));
+  throw FillFailed(fmt::format(
+      "fill: expected a domain whose border does not cross itself, got {} pairs of faces that do, the first "
+      "at {} and {} (where the input itself does so, --mode iso makes one that does not)",
+      crossings.size(), place(crossings[0].first), place(crossings[0].second)));
 }
 
 }  // namespace vdb_offset

@@ -11,8 +11,8 @@ namespace vdb_offset {
 std::vector<std::pair<std::uint32_t, std::uint32_t>> crossings_of(std::span<const Vec3d> points,
                                                                   std::span<const FrontTriangle> front);
 
-/// Edges of the front without a triangle that runs the other way, as such a one would have them: with what is to be filled
-/// on the left, seen from outside of it. Sorted.
+/// Edges of the front without a triangle that runs the other way, as such a one would have them: with what is to be
+/// filled on the left, seen from outside of it. Sorted.
 std::vector<std::array<std::uint32_t, 2>> open_edges(std::span<const FrontTriangle> front);
 
 /// Six times the signed volume inside of the front: above 0 where its triangles are ccw seen from outside of it.

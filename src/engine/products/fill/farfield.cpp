@@ -103,8 +103,8 @@ Polygons sphere_around(const Frame& frame, double radius) {
   std::array<Vec3d, 3> axis = frame.axis;
   if (frame.ends_above) middle[2] = frame.highest[2], axis = {axis[1], axis[0], -axis[2]};
   const Vec3d centre = frame.in_world(middle);
-  Polygons sphere = frame.ends_above ? shapes::hemisphere(radius, kSegments, kRings)
-                                     : shapes::icosphere(radius, kSubdivisions);
+  Polygons sphere =
+      frame.ends_above ? shapes::hemisphere(radius, kSegments, kRings) : shapes::icosphere(radius, kSubdivisions);
   // Exactly in the plane.
   for (Vec3d& x : sphere.positions) x = centre + axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2];
   return sphere;

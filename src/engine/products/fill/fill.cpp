@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fills what layers leave open. First its border is made: the front, which the layers' outermost faces and bare faces of
-// the wall are, and the farfield if the front does not enclose what is left. The border has to be closed and must not
-// cross itself; then a filler, which is not ours, gets it, with points relative to its middle. What comes back is not
-// trusted: it is joined to the layers, and proven to be a mesh of the domain, face by face, by exact predicates and by
-// its volume.
+// Fills what layers leave open. First its border is made: the front, which the layers' outermost faces and bare faces
+// of the wall are, and the farfield if the front does not enclose what is left. The border has to be closed and must
+// not cross itself; then a filler, which is not ours, gets it, with points relative to its middle. What comes back is
+// not trusted: it is joined to the layers, and proven to be a mesh of the domain, face by face, by exact predicates and
+// by its volume.
 #include "vdb_offset/fill.h"
 
 #include <fmt/format.h>
@@ -81,15 +81,16 @@ class Filling {
   }
 
  private:
-  /// Closes the front: its openings by caps if it encloses what is left, or else by the farfield, and by planes of symmetry
-  /// between that and its openings.
+  /// Closes the front: its openings by caps if it encloses what is left, or else by the farfield, and by planes of
+  /// symmetry between that and its openings.
   void close() {
     std::vector<OpenPlane> planes = open_planes(volume_.points, open_edges(front_.triangles));
     if (!planes.empty() && !options_.caps) {
       const Vec3d& place = planes[0].origin;
-      throw InvalidInput(fmt::format("fill: expected a closed surface, got one with {} openings, the first around ({:.6g}, "
-                                     "{:.6g}, {:.6g})",
-                                     planes.size(), place[0], place[1], place[2]));
+      throw InvalidInput(
+          fmt::format("fill: expected a closed surface, got one with {} openings, the first around ({:.6g}, "
+                      "{:.6g}, {:.6g})",
+                      planes.size(), place[0], place[1], place[2]));
     }
     const bool has_farfield = !is_enclosed_by(volume_.points, front_.triangles, planes);
     if (has_farfield) {
@@ -103,7 +104,8 @@ class Filling {
       const std::string name = free_name((has_farfield ? "symmetry" : "cap") + number);
       cover(planes[i], options_, name, has_farfield, front_, volume_);
     }
-    if (!open_edges(front_.triangles).empty()) throw FillFailed("fill: expected openings that can be covered, got others");
+    if (!open_edges(front_.triangles).empty())
+      throw FillFailed("fill: expected openings that can be covered, got others");
   }
 
   void add_farfield(std::span<const OpenPlane> planes) {
@@ -194,10 +196,10 @@ class Filling {
     for (std::size_t c = layer_cells_; c < first_tetrahedron_; ++c)
       if (!(scaled_jacobian(volume_, c) > 0)) {
         const Vec3d& place = volume_.points[volume_.cell(c)[4]];
-        throw FillFailed(
-            fmt::format("fill: expected faces that a pyramid can stand on, got one that is too bent at ({:.6g}, {:.6g}, "
-                        "{:.6g}) (--fill-quads split, in .vtu, .cgns or polyMesh)",
-                        place[0], place[1], place[2]));
+        throw FillFailed(fmt::format(
+            "fill: expected faces that a pyramid can stand on, got one that is too bent at ({:.6g}, {:.6g}, "
+            "{:.6g}) (--fill-quads split, in .vtu, .cgns or polyMesh)",
+            place[0], place[1], place[2]));
       }
     std::atomic<std::uint64_t> first_wrong = kNone;
     for_each_index(volume_.cell_count() - first_tetrahedron_, [&](std::size_t i) {
@@ -257,9 +259,10 @@ class Filling {
     const auto lost = std::find(on_front_.begin(), on_front_.end(), kNone);
     if (lost == on_front_.end()) return;
     const Vec3d& place = volume_.points[front_.triangles[lost - on_front_.begin()].corners[0]];
-    throw FillFailed(fmt::format("fill: expected a mesh that keeps all {} faces of its border, got one without that at "
-                                 "({:.6g}, {:.6g}, {:.6g})",
-                                 front_.triangles.size(), place[0], place[1], place[2]));
+    throw FillFailed(
+        fmt::format("fill: expected a mesh that keeps all {} faces of its border, got one without that at "
+                    "({:.6g}, {:.6g}, {:.6g})",
+                    front_.triangles.size(), place[0], place[1], place[2]));
   }
 
   /// \throw FillFailed unless each inner face belongs to two cells, and all others are in the patches, each once
@@ -319,8 +322,7 @@ class Filling {
     report.volume = filled_volume_;
     for (std::size_t c = layer_cells_; c < first_tetrahedron_; ++c) report.volume += cell_volume(volume_, c);
     const std::size_t made = volume_.cell_count() - layer_cells_;
-    report.scaled_jacobian =
-        spread_of(made, [&](std::size_t i) { return scaled_jacobian(volume_, layer_cells_ + i); });
+    report.scaled_jacobian = spread_of(made, [&](std::size_t i) { return scaled_jacobian(volume_, layer_cells_ + i); });
     std::vector<double> jumps;
     for (std::size_t t = 0; t < front_size_; ++t) {
       if (front_.triangles[t].cell == kNone) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fills what layers on curves leave open, in their plane: the segments of the layers' outer side and of the wall where it
-// has no layers are the border, with a circle or a square far away if they do not enclose what is left. Triangles come
-// from the mesher of planes, which keeps all segments; that they are a mesh of the region follows from its sides.
+// Fills what layers on curves leave open, in their plane: the segments of the layers' outer side and of the wall where
+// it has no layers are the border, with a circle or a square far away if they do not enclose what is left. Triangles
+// come from the mesher of planes, which keeps all segments; that they are a mesh of the region follows from its sides.
 #include "products/fill/openings.h"
 #include "vdb_offset/fill.h"
 
@@ -79,10 +79,10 @@ class PlaneFilling {
   void take_outer() {
     for (BoundaryPatch& patch : volume_.patches) {
       if (patch.kind != BoundaryPatch::Kind::Outer) continue;
-      for (std::size_t f = 0; f < patch.face_count(); ++f) add(patch.face(f)[1], patch.face(f)[0], kNone, patch.cell[f]);
+      for (std::size_t f = 0; f < patch.face_count(); ++f)
+        add(patch.face(f)[1], patch.face(f)[0], kNone, patch.cell[f]);
     }
-    std::erase_if(volume_.patches,
-                  [](const BoundaryPatch& patch) { return patch.kind == BoundaryPatch::Kind::Outer; });
+    std::erase_if(volume_.patches, [](const BoundaryPatch& patch) { return patch.kind == BoundaryPatch::Kind::Outer; });
   }
 
   /// Segments of the wall without layers, which what is left lies to the right of if the others' go outward.
@@ -113,8 +113,9 @@ class PlaneFilling {
     const auto open = std::ranges::find_if(surplus, [](int n) { return n != 0; });
     if (open == surplus.end()) return;
     const Vec3d& place = volume_.points[of_region_[open - surplus.begin()]];
-    throw InvalidInput(fmt::format("fill: expected closed curves, got one that ends at ({:.6g}, {:.6g}, {:.6g}) (--close)",
-                                   place[0], place[1], place[2]));
+    throw InvalidInput(
+        fmt::format("fill: expected closed curves, got one that ends at ({:.6g}, {:.6g}, {:.6g}) (--close)", place[0],
+                    place[1], place[2]));
   }
 
   /// Whether the largest of the curves is around what is left.
@@ -146,8 +147,8 @@ class PlaneFilling {
     volume_.patches.push_back({.name = "farfield", .kind = BoundaryPatch::Kind::Outer});
     const auto first = static_cast<Index>(volume_.points.size());
     for (int i = 0; i < kFarSegments; ++i) {
-      const Vec2d x = is_box ? on_square(i, lowest - Vec2d(reach), highest + Vec2d(reach))
-                             : middle + on_circle(i) * reach;
+      const Vec2d x =
+          is_box ? on_square(i, lowest - Vec2d(reach), highest + Vec2d(reach)) : middle + on_circle(i) * reach;
       volume_.points.push_back(origin_ + axes_[0] * x[0] + axes_[1] * x[1]);
     }
     for (Index i = 0; i < kFarSegments; ++i) add(first + i, first + (i + 1) % kFarSegments, patch, kNone);
@@ -180,7 +181,8 @@ class PlaneFilling {
     }
     for (std::size_t s = 0; s < region_.segments.size(); ++s) {
       const auto found = cells.find(region_.segments[s]);
-      if (found == cells.end()) throw FillFailed("fill: expected a mesh that keeps all segments, got one that does not");
+      if (found == cells.end())
+        throw FillFailed("fill: expected a mesh that keeps all segments, got one that does not");
       on_segment_.push_back(found->second);
       if (patch_[s] == kNone) continue;
       BoundaryPatch& patch = volume_.patches[patch_[s]];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What layers leave open is bounded by their outermost faces, by faces of the wall that carry no cells, and, where only a
-// part of the wall carries layers, by the sides of these. All of them become triangles of the volume mesh's points that
-// run counter-clockwise seen from outside of what is left. Where a face of a cell has more than three corners, either a
-// pyramid is put on it, whose own sides are in the front then, or the face itself is parted, with the cell behind it.
+// What layers leave open is bounded by their outermost faces, by faces of the wall that carry no cells, and, where only
+// a part of the wall carries layers, by the sides of these. All of them become triangles of the volume mesh's points
+// that run counter-clockwise seen from outside of what is left. Where a face of a cell has more than three corners,
+// either a pyramid is put on it, whose own sides are in the front then, or the face itself is parted, with the cell
+// behind it.
 #include "products/fill/front.h"
 
 #include <algorithm>
@@ -212,9 +213,7 @@ void part_cells(const std::vector<PartedFace>& parted, VolumeMesh& volume) {
         corners.insert(corners.end(), face.begin(), face.end());
       };
       for_each_cell_face(volume.cell_types[c], cell, [&](std::span<const Index> face) {
-        const auto is_it = [&](const auto& entry) {
-          return std::ranges::is_permutation(face, entry.second->corners);
-        };
+        const auto is_it = [&](const auto& entry) { return std::ranges::is_permutation(face, entry.second->corners); };
         const auto found = std::find_if(first, last, is_it);
         if (found == last) return add(face);
         for (const auto& triangle : found->second->triangles) add(triangle);

@@ -19,11 +19,11 @@ namespace {
 using Index = std::uint32_t;
 using Edge = std::array<Index, 2>;
 
-// How far an opening's edges may be off their plane, as a share of its size. Flat ones are off by rounding. Beyond, flat
-// caps would lean visibly towards the layers' sides.
+// How far an opening's edges may be off their plane, as a share of its size. Flat ones are off by rounding. Beyond,
+// flat caps would lean visibly towards the layers' sides.
 constexpr double kOffPlane = 1e-2;
 // Openings are in one plane if these are so near each other, as a share of the larger one's size.
-constexpr double kSamePlane = 1e-6;
+constexpr double kOneOpeningPlane = 1e-6;
 
 /// The middle of edges, weighted by their lengths, and their normal: right-handed, as long as twice the area that they
 /// enclose.
@@ -52,9 +52,10 @@ EdgeExtent edge_extent(std::span<const Vec3d> points, std::span<const Edge> edge
 OpenPlane plane_of(std::span<const Vec3d> points, std::vector<Edge> edges) {
   const EdgeExtent extent = edge_extent(points, edges);
   OpenPlane plane{extent.middle, extent.normal, std::move(edges)};
-  if (!(plane.normal.length() > kSamePlane * extent.size * extent.size))
-    throw InvalidInput(fmt::format("fill: expected openings around an area, got one without at ({:.6g}, {:.6g}, {:.6g})",
-                                   extent.middle[0], extent.middle[1], extent.middle[2]));
+  if (!(plane.normal.length() > kOneOpeningPlane * extent.size * extent.size))
+    throw InvalidInput(
+        fmt::format("fill: expected openings around an area, got one without at ({:.6g}, {:.6g}, {:.6g})",
+                    extent.middle[0], extent.middle[1], extent.middle[2]));
   plane.normal.normalize();
   for (int axis = 0; axis < 3; ++axis) {
     const double place = points[plane.edges[0][0]][axis];
@@ -67,10 +68,10 @@ OpenPlane plane_of(std::span<const Vec3d> points, std::vector<Edge> edges) {
   double off = 0;
   for (const auto& [a, b] : plane.edges) off = std::max(off, std::abs((points[a] - plane.origin).dot(plane.normal)));
   if (off > kOffPlane * extent.size)
-    throw InvalidInput(
-        fmt::format("fill: expected flat openings, got one around ({:.6g}, {:.6g}, {:.6g}) whose edges are up to {:.3g} off "
-                    "a plane (cut it straight, or close it)",
-                    plane.origin[0], plane.origin[1], plane.origin[2], off));
+    throw InvalidInput(fmt::format(
+        "fill: expected flat openings, got one around ({:.6g}, {:.6g}, {:.6g}) whose edges are up to {:.3g} off "
+        "a plane (cut it straight, or close it)",
+        plane.origin[0], plane.origin[1], plane.origin[2], off));
   return plane;
 }
 
@@ -86,7 +87,8 @@ std::map<Edge, Index> sides_at(const VolumeMesh& volume, std::span<const Edge> e
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
       const auto face = patch.face(f);
       for (std::size_t k = 0; k < face.size(); ++k)
-        if (const Edge edge = sorted(face[k], face[(k + 1) % face.size()]); wanted.contains(edge)) found.emplace(edge, i);
+        if (const Edge edge = sorted(face[k], face[(k + 1) % face.size()]); wanted.contains(edge))
+          found.emplace(edge, i);
     }
   }
   return found;
@@ -176,8 +178,8 @@ std::vector<OpenPlane> open_planes(std::span<const Vec3d> points, std::span<cons
     OpenPlane plane = plane_of(points, std::move(its_edges));
     const auto is_same = [&](const OpenPlane& other) {
       const double size = std::max(edge_extent(points, plane.edges).size, edge_extent(points, other.edges).size);
-      return plane.normal.cross(other.normal).length() < kSamePlane &&
-             std::abs((plane.origin - other.origin).dot(other.normal)) < kSamePlane * size;
+      return plane.normal.cross(other.normal).length() < kOneOpeningPlane &&
+             std::abs((plane.origin - other.origin).dot(other.normal)) < kOneOpeningPlane * size;
     };
     const auto known = std::ranges::find_if(planes, is_same);
     if (known == planes.end()) planes.push_back(std::move(plane));

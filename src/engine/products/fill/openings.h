@@ -25,8 +25,8 @@ std::array<Vec3d, 2> axes_across(const Vec3d& normal);
 /// \throw InvalidInput where edges that are connected do not lie in a plane
 std::vector<OpenPlane> open_planes(std::span<const Vec3d> points, std::span<const std::array<std::uint32_t, 2>> edges);
 
-/// Whether a front would enclose what is to be filled if its openings were closed: then it is inside, as in a pipe. Else
-/// it is around the front, as around half a body.
+/// Whether a front would enclose what is to be filled if its openings were closed: then it is inside, as in a pipe.
+/// Else it is around the front, as around half a body.
 bool is_enclosed_by(std::span<const Vec3d> points, std::span<const FrontTriangle> front,
                     std::span<const OpenPlane> openings);
 

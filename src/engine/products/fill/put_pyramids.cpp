@@ -18,12 +18,13 @@ namespace {
 
 using Index = std::uint32_t;
 
-// The height of pyramids by the root of the base's area, and by its shortest side at most. Measured on a pipe and a wing
-// of quads: 0.2 makes flatter ones (least scaled Jacobian 0.27 for 0.44), 0.5 makes neighbours cross at concave edges.
+// The height of pyramids by the root of the base's area, and by its shortest side at most. Measured on a pipe and a
+// wing of quads: 0.2 makes flatter ones (least scaled Jacobian 0.27 for 0.44), 0.5 makes neighbours cross at concave
+// edges.
 constexpr double kHeight = 0.35, kMostHeight = 0.7;
 constexpr double kShareOfAngle = 1.0 / 3;
 // Each halves what crosses; 2^-8 of the height is a pyramid that no solver takes.
-constexpr int kHalvings = 8;
+constexpr int kPyramidHalvings = 8;
 
 struct Base {
   Vec3d middle{0.0}, normal{0.0};  // the normal of unit length, towards what is left
@@ -39,7 +40,7 @@ class Pyramids {
     for (const QuadOfFront& quad : quads_) bases_.push_back(base_of(quad));
     lower_by_angles();
     make();
-    for (int round = 0; round < kHalvings; ++round)
+    for (int round = 0; round < kPyramidHalvings; ++round)
       if (!lower_crossing()) return;
     require_sound(volume_.points, front_.triangles);
   }
@@ -126,9 +127,7 @@ class Pyramids {
       volume_.cell_begin.push_back(volume_.corners.size());
       volume_.cell_types.push_back(CellType::Pyramid);
       // Seen from outside of what is left, a side runs from the next corner to this one.
-      const auto side = [&](std::size_t k) {
-        return FrontTriangle{{quad[(k + 1) % 4], quad[k], top}, cell, kNone};
-      };
+      const auto side = [&](std::size_t k) { return FrontTriangle{{quad[(k + 1) % 4], quad[k], top}, cell, kNone}; };
       front_.triangles[quads_[q].triangle] = side(0);
       front_.triangles[quads_[q].triangle + 1] = side(1);
       front_.triangles.push_back(side(2));

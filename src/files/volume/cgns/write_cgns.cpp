@@ -235,11 +235,11 @@ class CgnsZone {
     if (first == next_) return;
     const cgsize_t range[2] = {first, next_ - 1};
     const bool is_mirror = kind == BoundaryPatch::Kind::Symmetry || kind == BoundaryPatch::Kind::Empty;
-    const auto type = kind == BoundaryPatch::Kind::Wall ? CGNS_ENUMV(BCWall)
-                      : is_mirror                          ? CGNS_ENUMV(BCSymmetryPlane)
+    const auto type = kind == BoundaryPatch::Kind::Wall     ? CGNS_ENUMV(BCWall)
+                      : is_mirror                           ? CGNS_ENUMV(BCSymmetryPlane)
                       : kind == BoundaryPatch::Kind::Inlet  ? CGNS_ENUMV(BCInflow)
                       : kind == BoundaryPatch::Kind::Outlet ? CGNS_ENUMV(BCOutflow)
-                                                              : CGNS_ENUMV(BCGeneral);
+                                                            : CGNS_ENUMV(BCGeneral);
     int condition = 0;
     require(cg_boco_write(file_, base_, zone_, name.c_str(), type, CGNS_ENUMV(PointRange), 2, range, &condition));
     require(cg_boco_gridlocation_write(file_, base_, zone_, condition, CGNS_ENUMV(FaceCenter)));

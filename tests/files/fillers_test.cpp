@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_offset/io/filler.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <functional>
+
+#include "products/volume/volume_faces.h"
+#include "support/places.h"
+#include "vdb_offset/offset.h"
+#include "vdb_offset/shapes.h"
+
+using namespace vdb_offset;
+
+namespace {
+
+bool has_tetgen() { return std::system("command -v tetgen >/dev/null 2>&1") == 0; }
+
+VolumeMesh fill(const Polygons& wall, double thickness, const Filler& filler, FillReport* report = nullptr) {
+  const LayersResult layers = grow_layers(wall.view(), std::vector<Distances>{thickness / 2, thickness}, {});
+  LayerCellFacts facts;
+  VolumeMesh cells = make_cells(wall.view(), layers, {}, &facts);
+  FillOptions options;
+  options.farfield.size = 3;
+  return fill_volume(wall.view(), layers, facts, {}, std::move(cells), options, filler, report);
+}
+
+}  // namespace
+
+TEST_CASE("Netgen and TetGen fill around a body, and inside of one", "[no_races]") {
+  ::setenv("VDB_OFFSET_MODULES", test::modules_path().c_str(), 1);
+  const bool by_tetgen = has_tetgen() && GENERATE(true, false);
+  const Filler filler = by_tetgen ? io::tetgen_filler({}) : io::netgen_filler({});
+  const bool is_outside = GENERATE(true, false);
+  FillReport report;
+  const VolumeMesh mesh = fill(shapes::icosphere(1, 2), is_outside ? 0.1 : -0.1, filler, &report);
+  CHECK_NOTHROW(VolumeFaces(mesh));
+  CHECK(report.tetrahedra > (is_outside ? 1000 : 100));
+  CHECK(report.scaled_jacobian.least > (by_tetgen ? 0.02 : 0.1));
+  CHECK(report.jump.least >= 1);
+}
+
+TEST_CASE("a border that is none ends in an error, or in a mesh of what was meant", "[no_races]") {
+  ::setenv("VDB_OFFSET_MODULES", test::modules_path().c_str(), 1);
+  using Spoil = std::function<void(FillDomain&)>;
+  const Spoil spoil = GENERATE(values<Spoil>({
+      [](FillDomain& domain) { std::swap(domain.triangles[5][0], domain.triangles[5][1]); },
+      [](FillDomain& domain) { domain.triangles.erase(domain.triangles.begin() + 9); },
+      [](FillDomain& domain) { domain.triangles.push_back(domain.triangles[3]); },
+      [](FillDomain& domain) { domain.points[domain.triangles[7][0]] *= -1; },
+      [](FillDomain& domain) {
+        for (auto& t : domain.triangles) std::swap(t[0], t[1]);
+      },
+      [](FillDomain& domain) { domain.triangles.clear(); },
+  }));
+  const bool by_tetgen = has_tetgen() && GENERATE(true, false);
+  const io::FillerLimits limits{.seconds = 60};
+  const Filler filler = by_tetgen ? io::tetgen_filler(limits) : io::netgen_filler(limits);
+  const Filler spoilt = [&](FillDomain domain) {
+    spoil(domain);
+    return filler(domain);
+  };
+  // TetGen does not ask how triangles run, and takes double ones for one.
+  bool is_refused = false;
+  try {
+    const VolumeMesh mesh = fill(shapes::icosphere(1, 2), -0.1, spoilt);
+    CHECK_NOTHROW(VolumeFaces(mesh));
+  } catch (const FillFailed&) {
+    is_refused = true;
+  }
+  if (!by_tetgen) CHECK(is_refused);
+}
+
+TEST_CASE("a filler keeps to its time, ends when asked, and is missed where it is not there", "[no_races]") {
+  ::setenv("VDB_OFFSET_MODULES", test::modules_path().c_str(), 1);
+  const Polygons wall = shapes::icosphere(1, 3);
+  CHECK_THROWS_AS(fill(wall, 0.1, io::netgen_filler({.seconds = 0.3})), FillFailed);
+  io::FillerLimits cancelled;
+  cancelled.progress = [](Stage, double) { return false; };
+  CHECK_THROWS_AS(fill(wall, 0.1, io::netgen_filler(cancelled)), Cancelled);
+  ::setenv("VDB_OFFSET_MODULES", "/nowhere", 1);
+  CHECK_THROWS_AS(fill(wall, 0.1, io::netgen_filler({})), ReadError);
+  ::setenv("VDB_OFFSET_MODULES", test::modules_path().c_str(), 1);
+}
