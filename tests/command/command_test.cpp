@@ -1009,8 +1009,8 @@ TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][c
   CHECK(report["layers"]["fan_cells"] == 0);
   CHECK(report["layers"]["area"] == Approx(4));
   CHECK(report["layers"]["coverage"] == 1);
-  for (const char* const right :
-       {"out.su2", "out.vts --structured", "out.xyz --structured", "layer.dat", "none.vtu --dry-run"}) {
+  for (const char* const right : {"out.su2", "out.msh", "out.cgns", "polyMesh", "filled.vtu --fill",
+                                  "out.vts --structured", "out.xyz --structured", "layer.dat", "none.vtu --dry-run"}) {
     INFO(right);
     CHECK(shell(std::string("square.dat ") + right + layers).code == 0);
   }
@@ -1018,8 +1018,8 @@ TEST_CASE("command: layers on curves are cells, blocks and curves", "[command][c
   unsigned ni = 0, nj = 0, nk = 0;
   CHECK((block >> ni >> nj >> nk && ni == 5 && nj == 4 && nk == 1));
   for (const char* const made : {"layer_001.dat", "layer_002.dat", "layer_003.dat"}) CHECK(shell.has(made));
-  for (const char* const wrong : {"none.msh", "none.xyz", "none.vtu --structured", "none.cgns",
-                                  "none.obj --only group=a", "none.dat --fan-angle 30"}) {
+  for (const char* const wrong : {"none.xyz", "none.vtu --structured", "none.obj --only group=a",
+                                  "none.dat --fan-angle 30", "none.dat --fill", "none.vtu --fill --farfield box.obj"}) {
     INFO(wrong);
     const Run refused = shell(std::string("square.dat ") + wrong + layers);
     CHECK(refused.code == 1);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "command/shell_command.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+constexpr const char* kSquare = "0 0\n1 0\n1 1\n0 1\n0 0\n";
+
+}  // namespace
+
+TEST_CASE("--fill fills what layers leave, and --case writes what a solver needs besides", "[command]") {
+  ShellCommand shell;
+  std::ofstream(shell.file("square.dat")) << kSquare;
+  const Run made = shell(
+      "square.dat case/constant/polyMesh --layers 3 --first-height 0.02 --fill --farfield box:3L --report r.json "
+      "--case openfoam:case --reynolds 100 --speed 2 --patch wall=body --patch farfield=far:farfield");
+  CHECK(made.code == 0);
+  CHECK_THAT(made.out, Catch::Contains("the rest filled with"));
+  const std::string boundary = text_of(shell.file("case/constant/polyMesh/boundary"));
+  for (const char* const name : {"body", "far", "front_and_back", "empty"}) CHECK_THAT(boundary, Catch::Contains(name));
+  for (const char* const name : {"0/U", "0/p", "system/controlDict", "system/fvSchemes", "system/fvSolution", "README",
+                                 "constant/turbulenceProperties"})
+    CHECK(shell.has(std::string("case/") + name));
+  CHECK_THAT(text_of(shell.file("case/constant/transportProperties")), Catch::Contains("0.02;"));
+  CHECK_THAT(text_of(shell.file("case/0/U")), Catch::Contains("body { type noSlip; }"));
+  const auto report = nlohmann::json::parse(std::ifstream(shell.file("r.json")));
+  CHECK(report["layers"]["fill"]["triangles"] > 50);
+  CHECK(report["layers"]["fill"]["scaled_jacobian"]["least"] > 0.4);
+  // What is there stays.
+  std::ofstream(shell.file("case/0/U")) << "mine";
+  CHECK(
+      shell(
+          "square.dat case/constant/polyMesh --layers 3 --first-height 0.02 --fill --case openfoam:case --viscosity 1")
+          .code == 0);
+  CHECK(text_of(shell.file("case/0/U")) == "mine");
+}
+
+TEST_CASE("--fill says in one line what it cannot do", "[command]") {
+  ShellCommand shell;
+  std::ofstream(shell.file("square.dat")) << kSquare;
+  std::ofstream(shell.file("line.dat")) << "0 0\n1 0\n2 0.1\n";
+  struct Wrong {
+    const char* line;
+    int code;
+    const char* says;
+  };
+  const char* const layers = " --layers 3 --first-height 0.02 ";
+  for (const auto& [line, code, says] :
+       {Wrong{"square.dat none.vtu --fill -d 0.1", 1, "--fill needs"},
+        Wrong{"square.dat none.vtu --farfield sphere:3L LAYERS", 1, "--farfield needs --fill"},
+        Wrong{"square.dat none.vtu --fill --farfield sphere:x LAYERS", 1, "sphere:20L"},
+        Wrong{"square.dat none.vtu --fill --fill-growth 1 LAYERS", 1, "above 1"},
+        Wrong{"square.dat none.vtu --fill --farfield sphere:0.1L LAYERS", 2, "radius of at least"},
+        Wrong{"square.dat none.vtu --fill --patch inlet=a:b LAYERS", 1, "PATCH=NAME:KIND"},
+        Wrong{"square.dat none.vtu --fill --patch inlet=a LAYERS", 1, "expected one of wall, farfield"},
+        Wrong{"square.dat none.vtu --fill --case openfoam:c --reynolds 1 LAYERS", 1, "c/constant/polyMesh"},
+        Wrong{"square.dat c/constant/polyMesh --fill --case openfoam:c LAYERS", 1, "--viscosity"},
+        Wrong{"line.dat none.vtu --fill LAYERS", 2, "closed curves"}}) {
+    std::string command = line;
+    if (const auto at = command.find("LAYERS"); at != std::string::npos) command.replace(at, 6, layers);
+    INFO(command);
+    const Run refused = shell(command);
+    CHECK(refused.code == code);
+    CHECK_THAT(refused.err, Catch::Contains(says));
+    CHECK_FALSE(shell.has("none.vtu"));
+    CHECK_FALSE(shell.has("c"));
+  }
+}
