@@ -53,6 +53,7 @@ void write_domain(const FillDomain& domain, const std::string& path) {
 /// Runs a program, whose end is this one's if this one ends before. \return as of waitpid()
 int run(const std::vector<std::string>& words, std::uint64_t most_memory) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   const pid_t parent = ::getpid(), child = ::fork();

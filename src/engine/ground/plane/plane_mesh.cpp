@@ -146,49 +146,49 @@ class PlaneMesher {
     return nearest >= kNearest * size;
   }
 
+  struct Task {
+    double excess;
+    Index triangle;
+    bool operator<(const Task& other) const {
+      return excess != other.excess ? excess < other.excess : triangle > other.triangle;
+    }
+  };
+
+  void look_at(Index t) {
+    excess_.resize(std::max<std::size_t>(excess_.size(), t + 1), 0);
+    excess_[t] = excess(t);
+  }
+  void queue(Index t) {
+    if (t != kNone && !is_done(t) && front_side(t)) tasks_.push({excess_[t], t});
+  }
+  void queue_beside(Index t) {
+    for (const Index next : mesh_.triangles()[t].beside) queue(next);
+  }
+
+  /// Puts a point beside a triangle's front side, if there is room for one.
+  void refine(Index t, const Side& side) {
+    const Vec2d x = place_over(side);
+    const auto cavity = mesh_.cavity_of(x, t);
+    double size = 0;
+    if (!cavity || !has_room(x, *cavity, size)) {
+      // It is as good as it gets; what is beside it may go on from there.
+      excess_[t] = 0;
+      return queue_beside(t);
+    }
+    size_.push_back(size);
+    const std::vector<Index> around = mesh_.insert(x, *cavity);
+    for (const Index made : around) look_at(made);
+    for (const Index made : around) queue(made), queue_beside(made);
+  }
+
   void refine() {
-    struct Task {
-      double excess;
-      Index triangle;
-      bool operator<(const Task& other) const {
-        return excess != other.excess ? excess < other.excess : triangle > other.triangle;
-      }
-    };
-    std::priority_queue<Task> tasks;
-    const auto look_at = [&](Index t) {
-      excess_.resize(std::max<std::size_t>(excess_.size(), t + 1), 0);
-      excess_[t] = excess(t);
-    };
-    const auto queue = [&](Index t) {
-      if (!is_done(t) && front_side(t)) tasks.push({excess_[t], t});
-    };
     for (Index t = 0; t < mesh_.triangles().size(); ++t) look_at(t);
     for (Index t = 0; t < mesh_.triangles().size(); ++t) queue(t);
-    while (!tasks.empty()) {
-      const Task task = tasks.top();
-      tasks.pop();
-      const Index t = task.triangle;
-      if (excess_[t] != task.excess || is_done(t)) continue;
-      const auto side = front_side(t);
-      if (!side) continue;
-      const Vec2d x = place_over(*side);
-      const auto cavity = mesh_.cavity_of(x, t);
-      double size = 0;
-      if (!cavity || !has_room(x, *cavity, size)) {
-        // It is as good as it gets; what is beside it may go on from there.
-        excess_[t] = 0;
-        for (const Index next : mesh_.triangles()[t].beside)
-          if (next != kNone) queue(next);
-        continue;
-      }
-      size_.push_back(size);
-      const std::vector<Index> around = mesh_.insert(x, *cavity);
-      for (const Index made : around) look_at(made);
-      for (const Index made : around) {
-        queue(made);
-        for (const Index next : mesh_.triangles()[made].beside)
-          if (next != kNone) queue(next);
-      }
+    while (!tasks_.empty()) {
+      const Task task = tasks_.top();
+      tasks_.pop();
+      if (excess_[task.triangle] != task.excess || is_done(task.triangle)) continue;
+      if (const auto side = front_side(task.triangle)) refine(task.triangle, *side);
     }
   }
 
@@ -260,6 +260,7 @@ class PlaneMesher {
   Triangulation mesh_;
   std::vector<double> size_;    // of each point
   std::vector<double> excess_;  // of each triangle; 0: it stays as it is
+  std::priority_queue<Task> tasks_;
 };
 
 }  // namespace

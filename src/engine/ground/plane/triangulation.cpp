@@ -41,6 +41,10 @@ void fill_pocket(const std::vector<Vec2d>& points, Index from, Index to, std::sp
   throw InvalidInput(fmt::format("plane: expected {} at ({:.6g}, {:.6g})", what, x[0], x[1]));
 }
 
+[[noreturn]] void fail_through(const Vec2d& x) {
+  fail_at(x, "segments that go through no other point, got one that does");
+}
+
 }  // namespace
 
 Triangulation::Triangulation(std::span<const Vec2d> points) : points_(points.begin(), points.end()) {
@@ -136,11 +140,7 @@ std::vector<Index> Triangulation::put(Index p, const Cavity& cavity) {
     triangles_[around[i]] = {{from, to, p}, {kNone, kNone, behind}};
     starting_[from] = around[i];
     at_[from] = around[i];
-    if (behind == kNone) continue;
-    // The triangle behind still has the side's ends, the other way round.
-    Triangle& other = triangles_[behind];
-    for (std::size_t k = 0; k < 3; ++k)
-      if (other.corners[(k + 1) % 3] == to && other.corners[(k + 2) % 3] == from) other.beside[k] = around[i];
+    put_beside(behind, to, from, around[i]);
   }
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Index next = starting_[outline[i].to];
@@ -174,73 +174,79 @@ void Triangulation::turn_around(Index point, Visit&& visit) const {
   } while (t != at_[point]);
 }
 
-void Triangulation::enforce(Index from, Index to) {
-  // Where the segment leaves its start: through the side across from it, or along an edge.
-  bool is_there = false;
-  Side entry{kNone, 0};
+/// The side through which a segment leaves the triangle at its start; nothing if it is an edge already.
+std::optional<Triangulation::Side> Triangulation::way_out(Index from, Index to) const {
+  std::optional<Side> found;
   turn_around(from, [&](Index t, std::size_t k) {
     const Index a = triangles_[t].corners[(k + 1) % 3], b = triangles_[t].corners[(k + 2) % 3];
-    is_there = a == to || b == to;
-    if (is_there) return true;
+    if (a == to || b == to) return true;
     const int of_a = side_of(points_[from], points_[to], points_[a]),
               of_b = side_of(points_[from], points_[to], points_[b]);
-    if (of_a < 0 && of_b > 0) entry = {t, static_cast<Index>(k)};
-    else if (of_a == 0 && (points_[a] - points_[from]).dot(points_[to] - points_[from]) > 0)
-      fail_at(points_[a], "segments that go through no other point, got one that does");
-    return entry.triangle != kNone;
+    if (of_a == 0 && (points_[a] - points_[from]).dot(points_[to] - points_[from]) > 0) fail_through(points_[a]);
+    if (of_a < 0 && of_b > 0) found = {t, static_cast<Index>(k)};
+    return found.has_value();
   });
-  if (is_there) return;
-  VDB_OFFSET_ASSERT(entry.triangle != kNone);
-  // All triangles that the segment crosses, and the points to its left and to its right.
-  std::vector<Index> crossed = {entry.triangle}, left, right;
-  right.push_back(triangles_[entry.triangle].corners[(entry.corner + 1) % 3]);
-  left.push_back(triangles_[entry.triangle].corners[(entry.corner + 2) % 3]);
+  return found;
+}
+
+/// The triangles that a segment crosses, and the points to its left and to its right, in its direction.
+Triangulation::Crossed Triangulation::crossed_by(Index from, Index to, const Side& entry) const {
+  Crossed crossed;
+  crossed.triangles = {entry.triangle};
+  crossed.right = {triangles_[entry.triangle].corners[(entry.corner + 1) % 3]};
+  crossed.left = {triangles_[entry.triangle].corners[(entry.corner + 2) % 3]};
   for (Side at = entry;;) {
     const Index next = triangles_[at.triangle].beside[at.corner];
     const std::size_t k = corner_towards(next, at.triangle);
     const Index apex = triangles_[next].corners[k];
-    crossed.push_back(next);
-    if (apex == to) break;
+    crossed.triangles.push_back(next);
+    if (apex == to) return crossed;
     const int side = side_of(points_[from], points_[to], points_[apex]);
-    if (side == 0) fail_at(points_[apex], "segments that go through no other point, got one that does");
-    if (side > 0) {
-      left.push_back(apex);
-      at = {next, static_cast<Index>((k + 1) % 3)};
-    } else {
-      right.push_back(apex);
-      at = {next, static_cast<Index>((k + 2) % 3)};
-    }
+    if (side == 0) fail_through(points_[apex]);
+    (side > 0 ? crossed.left : crossed.right).push_back(apex);
+    at = {next, static_cast<Index>((k + (side > 0 ? 1 : 2)) % 3)};
   }
+}
+
+/// Makes a triangle have another one behind the side between two points, if it is one.
+void Triangulation::put_beside(Index triangle, Index from, Index to, Index other) {
+  if (triangle == kNone) return;
+  Triangle& its = triangles_[triangle];
+  for (std::size_t k = 0; k < 3; ++k)
+    if (its.corners[(k + 1) % 3] == from && its.corners[(k + 2) % 3] == to) its.beside[k] = other;
+}
+
+void Triangulation::enforce(Index from, Index to) {
+  const auto entry = way_out(from, to);
+  if (!entry) return;
+  Crossed crossed = crossed_by(from, to, *entry);
   // What lies behind the outer sides of all these, by the side's ends.
   std::map<std::pair<Index, Index>, Index> behind;
   std::vector<std::uint8_t> is_crossed(triangles_.size(), 0);
-  for (const Index t : crossed) is_crossed[t] = 1;
-  for (const Index t : crossed)
+  for (const Index t : crossed.triangles) is_crossed[t] = 1;
+  for (const Index t : crossed.triangles)
     for (std::size_t k = 0; k < 3; ++k)
       if (const Index next = triangles_[t].beside[k]; next == kNone || is_crossed[next] == 0)
         behind[{triangles_[t].corners[(k + 1) % 3], triangles_[t].corners[(k + 2) % 3]}] = next;
   std::vector<std::array<Index, 3>> made;
-  std::reverse(left.begin(), left.end());
-  fill_pocket(points_, from, to, left, made);
-  fill_pocket(points_, to, from, right, made);
-  VDB_OFFSET_ASSERT(made.size() == crossed.size());
+  std::reverse(crossed.left.begin(), crossed.left.end());
+  fill_pocket(points_, from, to, crossed.left, made);
+  fill_pocket(points_, to, from, crossed.right, made);
+  VDB_OFFSET_ASSERT(made.size() == crossed.triangles.size());
   std::map<std::pair<Index, Index>, Side> sides;
   for (std::size_t i = 0; i < made.size(); ++i) {
-    triangles_[crossed[i]] = {made[i], {kNone, kNone, kNone}};
+    const Index t = crossed.triangles[i];
+    triangles_[t] = {made[i], {kNone, kNone, kNone}};
     for (Index k = 0; k < 3; ++k) {
-      at_[made[i][k]] = crossed[i];
-      sides[{made[i][(k + 1) % 3], made[i][(k + 2) % 3]}] = {crossed[i], k};
+      at_[made[i][k]] = t;
+      sides[{made[i][(k + 1) % 3], made[i][(k + 2) % 3]}] = {t, k};
     }
   }
   for (const auto& [ends, side] : sides) {
-    Index& beside = triangles_[side.triangle].beside[side.corner];
-    if (const auto twin = sides.find({ends.second, ends.first}); twin != sides.end()) beside = twin->second.triangle;
-    else if (beside = behind.at(ends); beside != kNone) {
-      Triangle& other = triangles_[beside];
-      for (std::size_t k = 0; k < 3; ++k)
-        if (other.corners[(k + 1) % 3] == ends.second && other.corners[(k + 2) % 3] == ends.first)
-          other.beside[k] = side.triangle;
-    }
+    const auto twin = sides.find({ends.second, ends.first});
+    const Index other = twin == sides.end() ? behind.at(ends) : twin->second.triangle;
+    triangles_[side.triangle].beside[side.corner] = other;
+    put_beside(other, ends.second, ends.first, side.triangle);
   }
 }
 

@@ -58,7 +58,13 @@ class Triangulation {
  private:
   std::vector<Index> put(Index point, const Cavity& cavity);
   Index locate(const Vec2d& x) const;
+  struct Crossed {
+    std::vector<Index> triangles, left, right;
+  };
   void enforce(Index from, Index to);
+  std::optional<Side> way_out(Index from, Index to) const;
+  Crossed crossed_by(Index from, Index to, const Side& entry) const;
+  void put_beside(Index triangle, Index from, Index to, Index other);
   std::optional<std::size_t> corner_of(Index triangle, Index point) const;
   template <class Visit>
   void turn_around(Index point, Visit&& visit) const;

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "vdb_offset/shapes.h"
 
@@ -57,43 +59,53 @@ Frame frame_of(std::span<const Vec3d> points, std::span<const OpenPlane> planes)
 }
 
 /// A grid of triangles on each side of a frame's box, with cells about as wide as high, but where it ends at planes.
-Polygons grid_box(const Frame& frame) {
-  const Vec3d size = frame.size();
-  const double cell = frame.length() / kCellsAlong;
-  std::array<int, 3> count;
-  for (int k = 0; k < 3; ++k) count[k] = std::max(1, static_cast<int>(std::lround(size[k] / cell)));
-  Polygons box;
-  std::vector<std::uint32_t> number((count[0] + 1) * (count[1] + 1) * (count[2] + 1), kNone);
-  const auto point = [&](const std::array<int, 3>& at) {
-    std::uint32_t& known = number[(at[2] * (count[1] + 1) + at[1]) * (count[0] + 1) + at[0]];
-    if (known != kNone) return known;
-    Vec3d x;
-    for (int k = 0; k < 3; ++k)
-      x[k] = at[k] == count[k] ? frame.highest[k] : frame.lowest[k] + size[k] * at[k] / count[k];
-    known = static_cast<std::uint32_t>(box.positions.size());
-    box.positions.push_back(frame.in_world(x));
-    return known;
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const bool is_upper : {false, true}) {
-      if (axis == 2 && (is_upper ? frame.ends_above : frame.ends_below)) continue;
-      for (int i = 0; i < count[u]; ++i)
-        for (int j = 0; j < count[v]; ++j) {
-          const auto corner = [&](int di, int dj) {
-            std::array<int, 3> at;
-            at[axis] = is_upper ? count[axis] : 0;
-            at[u] = i + di, at[v] = j + dj;
-            return point(at);
-          };
-          const std::uint32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-          if (is_upper) box.add_face({a, b, c}), box.add_face({a, c, d});
-          else box.add_face({a, c, b}), box.add_face({a, d, c});
-        }
-    }
+class GridBox {
+ public:
+  explicit GridBox(const Frame& frame) : frame_(frame) {
+    const double cell = frame.length() / kCellsAlong;
+    for (int k = 0; k < 3; ++k) count_[k] = std::max(1, static_cast<int>(std::lround(frame.size()[k] / cell)));
   }
-  return box;
-}
+
+  Polygons make() {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const bool is_upper : {false, true})
+        if (axis < 2 || !(is_upper ? frame_.ends_above : frame_.ends_below)) add_side(axis, is_upper);
+    return std::move(box_);
+  }
+
+ private:
+  std::uint32_t point(const std::array<int, 3>& at) {
+    const auto [found, is_new] = number_.try_emplace(at, static_cast<std::uint32_t>(box_.positions.size()));
+    if (is_new) {
+      Vec3d x;
+      for (int k = 0; k < 3; ++k)
+        x[k] = at[k] == count_[k] ? frame_.highest[k] : frame_.lowest[k] + frame_.size()[k] * at[k] / count_[k];
+      box_.positions.push_back(frame_.in_world(x));
+    }
+    return found->second;
+  }
+
+  void add_side(int axis, bool is_upper) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto corner = [&](int i, int j) {
+      std::array<int, 3> at;
+      at[axis] = is_upper ? count_[axis] : 0;
+      at[u] = i, at[v] = j;
+      return point(at);
+    };
+    for (int i = 0; i < count_[u]; ++i)
+      for (int j = 0; j < count_[v]; ++j) {
+        const std::uint32_t a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
+        if (is_upper) box_.add_face({a, b, c}), box_.add_face({a, c, d});
+        else box_.add_face({a, c, b}), box_.add_face({a, d, c});
+      }
+  }
+
+  const Frame& frame_;
+  std::array<int, 3> count_{};
+  std::map<std::array<int, 3>, std::uint32_t> number_;  // of points, by their places in the grid
+  Polygons box_;
+};
 
 /// A sphere around the middle of a frame's box, or half of one around that of the side at a plane.
 Polygons sphere_around(const Frame& frame, double radius) {
@@ -167,7 +179,7 @@ Polygons make_farfield(const Farfield& farfield, std::span<const Vec3d> points, 
       if (k < 2 || !frame.ends_below) frame.lowest[k] -= reach;
       if (k < 2 || !frame.ends_above) frame.highest[k] += reach;
     }
-    return grid_box(frame);
+    return GridBox(frame).make();
   }
   // Its triangles come nearer to the middle than the radius, by 4 %.
   Vec3d half = frame.size() / 2;

@@ -334,7 +334,7 @@ class Filling {
 
   const FillOptions& options_;
   VolumeMesh volume_;
-  Front front_;  // with the farfield, whose triangles come last
+  FillFront front_;  // with the farfield, whose triangles come last
   std::size_t layer_points_ = 0, layer_cells_ = 0, front_size_ = 0, first_tetrahedron_ = 0;
   double six_volumes_ = 0, filled_volume_ = 0, seconds_ = 0;
   Vec3d middle_{0.0};

@@ -132,7 +132,7 @@ class FrontTaker {
   }
 
   const std::vector<FrontTriangle>& triangles() const { return front_.triangles; }
-  Front result() { return std::move(front_); }
+  FillFront result() { return std::move(front_); }
 
  private:
   void take(std::span<const Index> face, Index cell) {
@@ -154,7 +154,7 @@ class FrontTaker {
   FillQuads quads_;
   const Parting& parting_;
   VolumeMesh& volume_;
-  Front front_;
+  FillFront front_;
   std::vector<QuadOfFront> quads_on_;
 };
 
@@ -172,8 +172,8 @@ bool is_beside_bare(const BoundaryPatch& patch, const std::set<std::array<Index,
 
 }  // namespace
 
-Front take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const WallNames& names,
-                 FillQuads quads, VolumeMesh& volume) {
+FillFront take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const WallNames& names,
+                     FillQuads quads, VolumeMesh& volume) {
   const Parting parting(mesh, layers, volume);
   FrontTaker taker(quads, parting, volume);
   for (BoundaryPatch& patch : volume.patches)
@@ -201,7 +201,8 @@ void part_cells(const std::vector<PartedFace>& parted, VolumeMesh& volume) {
   begin.reserve(volume.cell_begin.size());
   for (std::size_t c = 0; c < volume.cell_count(); ++c) {
     const auto cell = volume.cell(c);
-    const auto [first, last] = of_cell.equal_range(static_cast<Index>(c));
+    const auto range = of_cell.equal_range(static_cast<Index>(c));
+    const auto first = range.first, last = range.second;
     if (first == last) {
       corners.insert(corners.end(), cell.begin(), cell.end());
     } else {

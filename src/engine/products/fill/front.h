@@ -24,7 +24,7 @@ struct PartedFace {
 };
 
 /// What layers leave to be filled, but for the farfield.
-struct Front {
+struct FillFront {
   std::vector<FrontTriangle> triangles;
   std::vector<PartedFace> parted;
 };
@@ -32,8 +32,8 @@ struct Front {
 /// Takes the patch "outer" from the mesh, and the sides too where a part of the wall carries layers, and adds what of
 /// the wall carries none. On faces of four corners pyramids are put, or they are parted, as all larger faces are. The
 /// front is open where the wall is.
-Front take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const WallNames& names,
-                 FillQuads quads, VolumeMesh& volume);
+FillFront take_front(PolygonView mesh, const LayersResult& layers, const LayerCellFacts& facts, const WallNames& names,
+                     FillQuads quads, VolumeMesh& volume);
 
 /// Gives the cells with parted faces these triangles in place of them: they become polyhedra.
 void part_cells(const std::vector<PartedFace>& parted, VolumeMesh& volume);

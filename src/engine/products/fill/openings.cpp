@@ -96,7 +96,7 @@ std::map<Edge, Index> sides_at(const VolumeMesh& volume, std::span<const Edge> e
 
 class Cover {
  public:
-  Cover(const OpenPlane& plane, Front& front, VolumeMesh& volume) : plane_(plane), front_(front), volume_(volume) {}
+  Cover(const OpenPlane& plane, FillFront& front, VolumeMesh& volume) : plane_(plane), front_(front), volume_(volume) {}
 
   void make(const FillOptions& options) {
     PlaneRegion region;
@@ -145,7 +145,7 @@ class Cover {
   }
 
   const OpenPlane& plane_;
-  Front& front_;
+  FillFront& front_;
   VolumeMesh& volume_;
   PlaneMesh mesh_;
   std::vector<Index> given_;  // points of the mesh, by the region's numbers
@@ -203,8 +203,8 @@ bool is_enclosed_by(std::span<const Vec3d> points, std::span<const FrontTriangle
   return is_enclosed(with_middles, closed);
 }
 
-void cover(const OpenPlane& plane, const FillOptions& options, const std::string& name, bool is_symmetric, Front& front,
-           VolumeMesh& volume) {
+void cover(const OpenPlane& plane, const FillOptions& options, const std::string& name, bool is_symmetric,
+           FillFront& front, VolumeMesh& volume) {
   Cover made(plane, front, volume);
   made.make(options);
   made.add_to(name, is_symmetric);

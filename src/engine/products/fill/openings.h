@@ -33,7 +33,7 @@ bool is_enclosed_by(std::span<const Vec3d> points, std::span<const FrontTriangle
 /// Covers a plane's openings with triangles, which grow from the edges inwards, and adds these to the front. Points are
 /// added to the mesh. Each piece is in the patch of the sides of layers around it, or else in one that is added.
 /// \param name of patches that are added, and of all if they are `symmetric`
-void cover(const OpenPlane& plane, const FillOptions& options, const std::string& name, bool is_symmetric, Front& front,
-           VolumeMesh& volume);
+void cover(const OpenPlane& plane, const FillOptions& options, const std::string& name, bool is_symmetric,
+           FillFront& front, VolumeMesh& volume);
 
 }  // namespace vdb_offset

@@ -33,7 +33,7 @@ struct Base {
 
 class Pyramids {
  public:
-  Pyramids(std::span<const QuadOfFront> quads, Front& front, VolumeMesh& volume)
+  Pyramids(std::span<const QuadOfFront> quads, FillFront& front, VolumeMesh& volume)
       : quads_(quads), front_(front), volume_(volume) {}
 
   void put() {
@@ -149,7 +149,7 @@ class Pyramids {
   }
 
   std::span<const QuadOfFront> quads_;
-  Front& front_;
+  FillFront& front_;
   VolumeMesh& volume_;
   std::vector<Base> bases_;
   Index first_apex_ = kNone;
@@ -157,7 +157,7 @@ class Pyramids {
 
 }  // namespace
 
-void put_pyramids_on(std::span<const QuadOfFront> quads, Front& front, VolumeMesh& volume) {
+void put_pyramids_on(std::span<const QuadOfFront> quads, FillFront& front, VolumeMesh& volume) {
   Pyramids(quads, front, volume).put();
 }
 

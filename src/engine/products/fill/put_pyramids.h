@@ -19,6 +19,6 @@ struct QuadOfFront {
 /// Puts pyramids on the quads of a front, and their sides in its place. A pyramid leans over each of its edges by no
 /// more than a third of the angle that is free there, and is lower where it would cross another face.
 /// \throw FillFailed where faces cross however low pyramids are
-void put_pyramids_on(std::span<const QuadOfFront> quads, Front& front, VolumeMesh& volume);
+void put_pyramids_on(std::span<const QuadOfFront> quads, FillFront& front, VolumeMesh& volume);
 
 }  // namespace vdb_offset
