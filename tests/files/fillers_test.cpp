@@ -56,7 +56,7 @@ TEST_CASE("a border that is none ends in an error, or in a mesh of what was mean
       [](FillDomain& domain) { domain.triangles.clear(); },
   }));
   const bool by_tetgen = has_tetgen() && GENERATE(true, false);
-  const io::FillerLimits limits{.seconds = 60};
+  const io::FillerLimits limits{.seconds = 10};
   const Filler filler = by_tetgen ? io::tetgen_filler(limits) : io::netgen_filler(limits);
   const Filler spoilt = [&](FillDomain domain) {
     spoil(domain);
