@@ -64,7 +64,9 @@ pid_t spawn(const std::string& program, int messages, const OpenFile* model, int
   posix_spawn_file_actions_addopen(list, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(list, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(list, messages, kWorkerMessages);
+  // Never left free: the worker's guard closes it, whatever has its number by then.
   if (model) posix_spawn_file_actions_adddup2(list, model->number(), kWorkerModel);
+  else posix_spawn_file_actions_addopen(list, kWorkerModel, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(list, end, kWorkerEnd);
   SpawnAttributes attributes;
   set_attributes(attributes.list);
