@@ -43,6 +43,24 @@ TEST_CASE("Netgen and TetGen fill around a body, and inside of one", "[no_races]
   CHECK(report.jump.least >= 1);
 }
 
+TEST_CASE("two halves on one plane are filled around, and the plane is one of symmetry throughout", "[no_races]") {
+  ::setenv("VDB_OFFSET_MODULES", test::modules_path().c_str(), 1);
+  Polygons halves = shapes::hemisphere(1, 12, 3);
+  const Polygons other = halves;
+  const auto first = static_cast<std::uint32_t>(halves.positions.size());
+  for (const Vec3d& x : other.positions) halves.positions.push_back(x + Vec3d(4, 0, 0));
+  for (const std::uint32_t v : other.corners) halves.corners.push_back(first + v);
+  const auto corners = static_cast<std::uint32_t>(other.corners.size());
+  for (std::size_t f = 1; f < other.face_begin.size(); ++f) halves.face_begin.push_back(corners + other.face_begin[f]);
+  const VolumeMesh mesh = fill(halves, 0.1, io::netgen_filler({}));
+  CHECK_NOTHROW(VolumeFaces(mesh));
+  using Kind = BoundaryPatch::Kind;
+  CHECK(std::ranges::count(mesh.patches, Kind::Symmetry, &BoundaryPatch::kind) == 2);
+  CHECK(std::ranges::count(mesh.patches, Kind::Side, &BoundaryPatch::kind) == 0);
+  for (const BoundaryPatch& patch : mesh.patches)
+    CHECK(std::ranges::count(mesh.patches, patch.name, &BoundaryPatch::name) == 1);
+}
+
 TEST_CASE("a border that is none ends in an error, or in a mesh of what was meant", "[no_races]") {
   ::setenv("VDB_OFFSET_MODULES", test::modules_path().c_str(), 1);
   using Spoil = std::function<void(FillDomain&)>;

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include "bytes/open_module.h"
 #include "ground/process/worker_process.h"
@@ -35,10 +36,10 @@ class FolderForFiles {
     std::string name = (std::filesystem::temp_directory_path() / "vdb_offset-XXXXXX").string();
     if (!::mkdtemp(name.data())) throw WriteError(name + ": cannot be made: " + std::strerror(errno));
     folder_.emplace(name, Temporary::Kind::Folder);
-  }
-  ~FolderForFiles() {
-    std::error_code lost;
-    for (const auto& file : std::filesystem::directory_iterator(path(), lost)) std::filesystem::remove(file, lost);
+    // What TetGen reads and writes goes too where a signal ends this process, which removes no folder that is not
+    // empty.
+    for (const char* const file : {"poly", "1.node", "1.ele", "1.face", "1.edge", "1.smesh", "1.poly"})
+      files_.emplace_back(name + "/domain." + file, Temporary::Kind::File);
   }
   FolderForFiles(const FolderForFiles&) = delete;
   FolderForFiles& operator=(const FolderForFiles&) = delete;
@@ -47,6 +48,7 @@ class FolderForFiles {
 
  private:
   std::optional<Temporary> folder_;
+  std::vector<Temporary> files_;  // go before it
 };
 
 struct FillerName {

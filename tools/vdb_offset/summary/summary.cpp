@@ -308,7 +308,7 @@ void add_fill(const FillReport& fill, Summary& made) {
   if (fill.jump.quantile_95 > kMostJump)
     made.remarks.add(
         Gravity::Off,
-        fmt::format("from the last layer to the tetrahedra, volumes change {:.3g} times on average, and {:.3g} "
+        fmt::format("from the last layer to the cells on it, volumes change {:.3g} times on average, and {:.3g} "
                     "times at 5 % of the faces. Use more layers, which grow until they are as high as wide",
                     fill.jump.median, fill.jump.quantile_95));
 }

@@ -103,15 +103,14 @@ class Cover {
     region.growth = options.growth;
     region.longest = options.longest.value_or(region.longest);
     const auto [u, v] = axes_across(plane_.normal);
-    std::map<Index, Index> number;
     for (const auto& [a, b] : plane_.edges) {
       for (const Index p : {a, b}) {
-        if (!number.try_emplace(p, static_cast<Index>(given_.size())).second) continue;
+        if (!number_.try_emplace(p, static_cast<Index>(given_.size())).second) continue;
         given_.push_back(p);
         const Vec3d from = volume_.points[p] - plane_.origin;
         region.points.emplace_back(from.dot(u), from.dot(v));
       }
-      region.segments.push_back({number[a], number[b]});
+      region.segments.push_back({number_.at(a), number_.at(b)});
     }
     mesh_ = mesh_plane(region);
     first_added_ = static_cast<Index>(volume_.points.size());
@@ -121,25 +120,47 @@ class Cover {
   /// Puts the triangles into patches: those of connected ones around which sides lie, or else a new one.
   void add_to(const std::string& name, bool is_symmetric) {
     const std::map<Edge, Index> sides = sides_at(volume_, plane_.edges);
+    if (is_symmetric) make_symmetric(sides, name);
     DisjointSets pieces(given_.size() + mesh_.added.size());
     for (const auto& [a, b, c] : mesh_.triangles) pieces.join(a, b), pieces.join(b, c);
     std::vector<Index> patch(given_.size() + mesh_.added.size(), kNone);
-    for (Index i = 0; i < given_.size(); ++i)
-      for (const auto& [edge, side] : sides)
-        if (edge[0] == given_[i]) patch[pieces.first(i)] = std::min(patch[pieces.first(i)], side);
+    for (const auto& [edge, side] : sides) {
+      Index& here = patch[pieces.first(number_.at(edge[0]))];
+      here = std::min(here, side);
+    }
     for (const auto& triangle : mesh_.triangles) {
       Index& here = patch[pieces.first(triangle[0])];
       if (here == kNone) {
         here = static_cast<Index>(volume_.patches.size());
-        volume_.patches.push_back({.name = name, .kind = BoundaryPatch::Kind::Side});
+        volume_.patches.push_back({.name = unused(name), .kind = kind_of(is_symmetric)});
       }
-      BoundaryPatch& of = volume_.patches[here];
-      if (is_symmetric) of.kind = BoundaryPatch::Kind::Symmetry, of.name = name;
       front_.triangles.push_back({{point(triangle[0]), point(triangle[1]), point(triangle[2])}, kNone, here});
     }
   }
 
  private:
+  static BoundaryPatch::Kind kind_of(bool is_symmetric) {
+    return is_symmetric ? BoundaryPatch::Kind::Symmetry : BoundaryPatch::Kind::Side;
+  }
+
+  /// The name, or with a number behind it if a patch has it.
+  std::string unused(const std::string& name) const {
+    std::string tried = name;
+    for (int n = 2; std::ranges::find(volume_.patches, tried, &BoundaryPatch::name) != volume_.patches.end(); ++n)
+      tried = fmt::format("{}_{}", name, n);
+    return tried;
+  }
+
+  /// The sides of all bodies that end at the plane belong to it.
+  void make_symmetric(const std::map<Edge, Index>& sides, const std::string& name) {
+    std::set<Index> patches;
+    for (const auto& [edge, side] : sides) patches.insert(side);
+    for (const Index i : patches) {
+      volume_.patches[i].name = unused(name);
+      volume_.patches[i].kind = BoundaryPatch::Kind::Symmetry;
+    }
+  }
+
   Index point(Index p) const {
     return p < given_.size() ? given_[p] : first_added_ + p - static_cast<Index>(given_.size());
   }
@@ -148,7 +169,8 @@ class Cover {
   FillFront& front_;
   VolumeMesh& volume_;
   PlaneMesh mesh_;
-  std::vector<Index> given_;  // points of the mesh, by the region's numbers
+  std::vector<Index> given_;       // points of the mesh, by the region's numbers
+  std::map<Index, Index> number_;  // and the other way round
   Index first_added_ = 0;
 };
 
