@@ -127,7 +127,8 @@ void VolumeFaces::match(const VolumeMesh& mesh) {
     sides.clear();
     for (std::uint64_t i = by_point.begin[p]; i < by_point.begin[p + 1]; ++i) {
       corners_of(by_point.sides[i], first);
-      sides.push_back({std::uint64_t{first[1]} << 32 | first[2], by_point.sides[i]});
+      // The faces of plane cells have two corners.
+      sides.push_back({std::uint64_t{first[1]} << 32 | first.back(), by_point.sides[i]});
     }
     std::sort(sides.begin(), sides.end());
     for (std::size_t i = 0; i < sides.size(); ++i) {
