@@ -105,8 +105,9 @@ TEST_CASE("fanned curves: behind a trailing edge cells have about the sizes of t
   std::vector<Distances> heights;
   for (double height = 1e-3; height < 20; height *= 1.25) heights.emplace_back(height);
   heights.emplace_back(20.0);
-  for (const bool in_two : {false, true}) {
-    const Curves curves = foil(60, in_two);
+  for (const auto& [in_two, clockwise] : {std::pair{false, false}, {false, true}, {true, false}}) {
+    Curves curves = foil(60, in_two);
+    if (clockwise) std::reverse(curves.corners.begin(), curves.corners.end());
     const Fanned made = grow_fanned(curves, heights);
     CHECK(made.grown.report.all.coverage == 1);
     CHECK(made.grown.report.all.fan_cells == 3 * heights.size());

@@ -293,7 +293,8 @@ CurveChains join_curves(CurvesView curves, std::span<const Vec2d> points) {
   joined.closed = loops.size();
   std::vector<Segment> in_order;
   in_order.reserve(joined.segments.size());
-  const auto take = [&](const std::vector<Step>& steps, bool backwards) {
+  const auto take = [&](std::vector<Step> steps, bool backwards) {
+    if (backwards) std::reverse(steps.begin(), steps.end());
     for (const auto& [s, turned] : steps) {
       const auto [a, b] = joined.segments[s];
       in_order.push_back(turned != backwards ? Segment{b, a} : Segment{a, b});

@@ -27,8 +27,9 @@ using Segment = std::array<std::uint32_t, 2>;
 
 /// Curves joined end to end.
 struct CurveChains {
-  std::vector<Segment> segments;  ///< In the order of the chains, between the first points at each position; none
-                                  ///< without a length.
+  /// In the order of the chains, each from where the one before it ends; between the first points at each position;
+  /// none without a length.
+  std::vector<Segment> segments;
   /// For each point the first one at its position, or, of two ends that are apart by rounding alone, the first of
   /// these; kNone if no curve uses it.
   std::vector<std::uint32_t> welded_to;
