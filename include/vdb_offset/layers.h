@@ -87,6 +87,11 @@ struct LayerStatistics {
   std::size_t rounds = 0;            ///< Rounds in which layers were thinned or let out again.
   std::size_t thinned_vertices = 0;  ///< Vertices of the surface that keep less than all of their heights.
   std::size_t flat_vertices = 0;     ///< Vertices of the surface that keep no height, although they were asked to.
+  /// Vertices of the outermost surface that keep all of their heights, and have edges shorter than a fifth of the
+  /// wall's, and than half of what is left of these along the vertices' normals: at concave edges where there was no
+  /// room to spread them.
+  std::size_t crowded_vertices = 0;
+  double least_edge = 1;  ///< The shortest of these edges, as a share of the wall's; 1 if there is none.
   FaceError first_faces;  ///< Of the surface at the first height; OffsetStatistics::faces are the outermost one's.
 };
 

@@ -84,7 +84,7 @@ GrownLine grow_line(std::size_t vertices, double spacing, Limit&& limit) {
   limit(wall);
   const ProgressCallback nobody;
   Progress progress(nobody, Stage::Layers, 1);
-  grown.stack = grow_on(wall, grown.paths, progress);
+  grown.stack = grow_on(wall, grown.paths, {}, progress);
   return grown;
 }
 

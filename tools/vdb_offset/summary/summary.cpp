@@ -338,6 +338,12 @@ Summary summary_of(const Job& job, const LayersResult& result, const LayerReport
                             LayerFigures::kPoorJacobian,
                             all.needles > 0 ? fmt::format("{} faces of the wall are needles: remesh it", all.needles)
                                             : "Thinner layers have more room"));
+  if (report.growing.crowded_vertices > 0)
+    remarks.add(
+        Gravity::Off,
+        fmt::format("{} vertices of the last layer are nearer to others than a fifth of the wall's edges (least "
+                    "{:.2g}), at concave edges without room. Use thinner layers, or a coarser wall there",
+                    report.growing.crowded_vertices, report.growing.least_edge));
   if (report.unpaired_sides > 0)
     remarks.add(Gravity::Input,
                 fmt::format("{} sides on edges of three faces, or of two of opposite orientation, are on "

@@ -96,7 +96,7 @@ LayerStack stack_curves(const PlaneCurves& curves, std::span<const Distances> he
   asked.stretch_mitered(paths);
   RailStacks stacks(asked, paths);
   CurveWall wall(curves, faults, stacks);
-  LayerStack stack = grow_on(wall, paths, progress);
+  LayerStack stack = grow_on(wall, paths, {}, progress);
   round_layers(
       source, curves.precision, [](std::uint32_t) { return true; },
       [&](std::uint32_t p, const Vec3d& position) -> std::optional<double> {

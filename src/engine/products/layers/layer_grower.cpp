@@ -17,6 +17,7 @@
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
 #include "products/layers/invalid_columns.h"
+#include "products/layers/spread_ends.h"
 
 namespace vdb_offset {
 namespace {
@@ -152,10 +153,11 @@ class PutLayers {
 /// The rounds of one wall. Each takes the layers as the one before has put them.
 class LayerGrower {
  public:
-  LayerGrower(LayerWall& wall, Paths& paths)
+  LayerGrower(LayerWall& wall, Paths& paths, std::span<const Vec3d> unspread)
       : wall_(wall),
         stacks_(wall.stacks()),
         paths_(paths),
+        unspread_(unspread),
         even_(wall),
         count_(stacks_.asked().source.size()),
         thinned_(count_, 0) {}
@@ -166,7 +168,7 @@ class LayerGrower {
     choose_rails(all);
     PutLayers layers(wall_, all);
     statistics_.wrong_columns = layers.invalid().size();
-    while (straighten(layers)) progress.advance(0);
+    while (straighten(layers) || take_spread_back(layers)) progress.advance(0);
     while (thin(layers)) progress.advance(1);
     let_all_out(layers, progress);
     return finish(layers);
@@ -175,7 +177,9 @@ class LayerGrower {
  private:
   void choose_rails(const Indices& all);
   double share_at_end(std::uint32_t v, Vec3d& bend) const;
+  void start(std::uint32_t v);
   bool straighten(PutLayers& layers);
+  bool take_spread_back(PutLayers& layers);
   bool thin(PutLayers& layers);
   void let_all_out(PutLayers& layers, Progress& progress);
   void let_out(PutLayers& layers, Indices& thinned, std::vector<double>& before);
@@ -185,6 +189,7 @@ class LayerGrower {
   LayerWall& wall_;
   RailStacks& stacks_;
   Paths& paths_;
+  std::span<const Vec3d> unspread_;  // see stack_layers()
   EvenThickness even_;
   std::size_t count_;                  // of vertices
   std::vector<std::uint8_t> thinned_;  // of each vertex: in how many rounds it was thinned
@@ -194,16 +199,17 @@ class LayerGrower {
 
 /// Chooses the rails of all vertices, and shares with which the thickness is even.
 void LayerGrower::choose_rails(const Indices& all) {
-  for_each_index(count_, [&](std::size_t i) {
-    const auto v = static_cast<std::uint32_t>(i);
-    Vec3d bend(0.0);
-    const double share = share_at_end(v, bend);
-    stacks_.start(v, bend, share);
-  });
+  for_each_index(count_, [&](std::size_t v) { start(static_cast<std::uint32_t>(v)); });
   Indices uneven = all;
   if (stacks_.asked().heights.back().uniform())
     std::erase_if(uneven, [&](std::uint32_t v) { return stacks_.share(v) == 1; });
   even_.lower_around(std::move(uneven));
+}
+
+void LayerGrower::start(std::uint32_t v) {
+  Vec3d bend(0.0);
+  const double share = share_at_end(v, bend);
+  stacks_.start(v, bend, share);
 }
 
 /// The share of its heights that the end of a vertex's path leaves it; 0 where neither the vertex's own direction nor a
@@ -231,6 +237,25 @@ bool LayerGrower::straighten(PutLayers& layers) {
   for (const auto v : corners) stacks_.straighten(v);
   straightened_.insert(straightened_.end(), corners.begin(), corners.end());
   layers.move(corners);
+  return true;
+}
+
+/// Has the vertices of faults and invalid cells end where their paths led before they were spread. Returns false if
+/// none of them was.
+bool LayerGrower::take_spread_back(PutLayers& layers) {
+  if (unspread_.empty()) return false;
+  const Indices vertices = spread_together(
+      layers.vertices_to_thin(), count_, [&](std::uint32_t v) { return paths_.displacement[v] != unspread_[v]; },
+      [&](std::uint32_t v, const auto& visit) {
+        for (const auto column : wall_.columns_around(v))
+          for (const auto w : wall_.base(column)) visit(w);
+      });
+  if (vertices.empty()) return false;
+  for (const auto v : vertices) {
+    paths_.displacement[v] = unspread_[v];
+    start(v);
+  }
+  layers.move(vertices);
   return true;
 }
 
@@ -328,6 +353,8 @@ LayerStack LayerGrower::finish(const PutLayers& layers) {
 
 }  // namespace
 
-LayerStack grow_on(LayerWall& wall, Paths& paths, Progress& progress) { return LayerGrower(wall, paths).run(progress); }
+LayerStack grow_on(LayerWall& wall, Paths& paths, std::span<const Vec3d> unspread, Progress& progress) {
+  return LayerGrower(wall, paths, unspread).run(progress);
+}
 
 }  // namespace vdb_offset

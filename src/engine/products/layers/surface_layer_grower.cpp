@@ -258,7 +258,7 @@ class SurfaceWall final : public LayerWall {
 
 LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
-                        Paths& paths, const ProgressCallback& callback) {
+                        Paths& paths, std::span<const Vec3d> unspread, const ProgressCallback& callback) {
   // Half of the stage is shown as done after this many rounds. Not measured.
   constexpr std::size_t kExpectedRounds = 32;
   Progress progress(callback, Stage::Layers, kExpectedRounds, Units::Unknown);
@@ -267,7 +267,7 @@ LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlide
   asked.stretch_mitered(paths);
   RailStacks stacks(asked, paths);
   SurfaceWall wall(constrained, slides, columns, faults, paths, stacks);
-  return grow_on(wall, paths, progress);
+  return grow_on(wall, paths, unspread, progress);
 }
 
 void round_layers(std::span<const Vec3d> source, const Rounding& precision,

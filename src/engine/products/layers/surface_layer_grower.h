@@ -42,9 +42,11 @@ struct LayerStack {
 /// \param heights of the surface's vertices, one set for each layer
 /// \param faults of the surface with its vertices at the ends of their paths; receives those that are left
 /// \param paths of the surface's vertices; receive what became of the outermost surface
+/// \param unspread what paths led to before their ends were spread (spread_ends.h): where that makes a cell invalid,
+/// they lead there again. Empty: none is spread
 LayerStack stack_layers(const ConstrainedSurface& constrained, const BorderSlides* slides, const GrowthColumns& columns,
                         std::span<const Vec3d> source, std::span<const Distances> heights, FaultFinder& faults,
-                        Paths& paths, const ProgressCallback& progress = {});
+                        Paths& paths, std::span<const Vec3d> unspread, const ProgressCallback& progress = {});
 
 /// Rounds layers to the coordinates that a file keeps, and measures the distances of the first and the last of them
 /// there. The wall stays as it is, and so do vertices that are not written.

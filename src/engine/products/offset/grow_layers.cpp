@@ -18,6 +18,7 @@
 #include "ground/system/parallel.h"
 #include "ground/system/stage_timer.h"
 #include "products/layers/growth_columns.h"
+#include "products/layers/spread_ends.h"
 #include "products/layers/surface_layer_grower.h"
 #include "products/offset/faulty_miters.h"
 #include "valid/faults/face_error.h"
@@ -172,8 +173,11 @@ LayersResult grow_marched(const PreparedMesh& mesh, const AskedHeights& asked, P
   {
     const StageTimer timer(statistics.seconds, Stage::Layers);
     columns.emplace(mesh.mesh(), constrained, mesh.source(), rules, foot);
-    stack = stack_layers(constrained, mesh.slides(), *columns, mesh.source(), asked.of_all, *faults, paths,
+    const SpreadInput to_spread{constrained, *columns, mesh.source(), outer};
+    const std::vector<Vec3d> unspread = spread_ends(to_spread, *faults, paths);
+    stack = stack_layers(constrained, mesh.slides(), *columns, mesh.source(), asked.of_all, *faults, paths, unspread,
                          options.progress);
+    count_crowded(to_spread, paths, stack.share, stack.statistics);
     round_to_file(mesh, constrained, stack, paths);
   }
   statistics.limit.left = faults->count();

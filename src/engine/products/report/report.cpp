@@ -248,6 +248,8 @@ Json layers_json(const LayerReport& layers) {
   report["growing"] = {{"wrong_columns", layers.growing.wrong_columns},
                        {"straightened", layers.growing.straightened},
                        {"rounds", layers.growing.rounds},
+                       {"crowded_vertices", layers.growing.crowded_vertices},
+                       {"least_edge", layers.growing.least_edge},
                        {"thinned_vertices", layers.growing.thinned_vertices},
                        {"flat_vertices", layers.growing.flat_vertices}};
   report["sides"] = {{"border", layers.border_sides},
