@@ -13,7 +13,6 @@
 #include <limits>
 #include <optional>
 
-#include "ground/system/assert.h"
 #include "ground/system/parallel.h"
 
 namespace vdb_offset {
@@ -189,8 +188,8 @@ class EndSpreader {
     vdb_offset::for_each_spring(input_, v, visit);
   }
 
-  /// The least length of an edge that is not crowded, by that on the wall. \param aim for vertices that have gone as
-  /// far as they may
+  /// The share of the wall's edge below which an edge is crowded: `aim`, or less where the straight ways along its
+  /// vertices' normals bring these nearer to each other.
   double least_share(std::uint32_t v, const Spring& edge, double aim) const {
     const auto straight = [&](std::uint32_t w) { return start_direction(part_, on_part(w)) * input_.distances[w]; };
     const Vec3d along = input_.source[edge.other] - input_.source[v];

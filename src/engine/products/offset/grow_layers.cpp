@@ -177,8 +177,8 @@ LayersResult grow_marched(const PreparedMesh& mesh, const AskedHeights& asked, P
     const std::vector<Vec3d> unspread = spread_ends(to_spread, *faults, paths);
     stack = stack_layers(constrained, mesh.slides(), *columns, mesh.source(), asked.of_all, *faults, paths, unspread,
                          options.progress);
-    count_crowded(to_spread, paths, stack.share, stack.statistics);
     round_to_file(mesh, constrained, stack, paths);
+    count_crowded(to_spread, paths, stack.share, stack.statistics);
   }
   statistics.limit.left = faults->count();
   statistics.limit.crossings_near_source = faults->crossings_near_source().size();
