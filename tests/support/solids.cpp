@@ -57,4 +57,26 @@ Polygons nose_strip(double depth, double half_width, double power, double length
   return mesh;
 }
 
+Polygons l_tube(int segments) {
+  const std::vector<std::array<double, 2>> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  std::vector<std::array<double, 2>> ring;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    const int count = segments * static_cast<int>(std::abs(b[0] - a[0]) + std::abs(b[1] - a[1]));
+    for (int k = 0; k < count; ++k)
+      ring.push_back({a[0] + (b[0] - a[0]) * k / count, a[1] + (b[1] - a[1]) * k / count});
+  }
+  Polygons mesh;
+  constexpr std::uint32_t kStations = 4;
+  const auto n = static_cast<std::uint32_t>(ring.size());
+  for (std::uint32_t j = 0; j <= kStations; ++j)
+    for (const auto& [x, y] : ring) mesh.positions.emplace_back(x, y, static_cast<double>(j) / segments);
+  for (std::uint32_t j = 0; j < kStations; ++j)
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t a = j * n + i, b = j * n + (i + 1) % n;
+      mesh.add_face({a, b, b + n, a + n});
+    }
+  return mesh;
+}
+
 }  // namespace vdb_offset::test

@@ -20,4 +20,8 @@ Polygons lathe(std::span<const std::array<double, 2>> profile, std::uint32_t seg
 /// An open strip along z, of triangles from end to end: across it, x = depth |y / half width|^power.
 Polygons nose_strip(double depth, double half_width, double power, double length, std::uint32_t segments);
 
+/// A tube with an L for its section, open at both ends: both arms are 2 long and 1 wide, in so many quads a unit; four
+/// quads deep.
+Polygons l_tube(int segments);
+
 }  // namespace vdb_offset::test

@@ -11,6 +11,8 @@
 #include "space/field/rasterise.h"
 #include "space/field/sweep.h"
 #include "support/oracles.h"
+#include "support/solids.h"
+#include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;
@@ -190,4 +192,19 @@ TEST_CASE("march: in a cube the ridges lead all vertices to the smaller cube", "
   DirectionSampler of_sphere(sphere.directions);
   VertexMarch<ClosestQuery> march(sphere.query, sphere.directions, of_sphere, -1, 0, March::Exact);
   CHECK_FALSE(march.go_along_ridges(0.2, 0));
+}
+
+TEST_CASE("march: at the border of an open tube no path crosses the wall", "[march][border][oracle]") {
+  const auto inside = [](const Vec3d& x) {
+    return x[0] > 0 && x[1] > 0 && x[0] < 2 && x[1] < 2 && (x[0] < 1 || x[1] < 1);
+  };
+  const Polygons mesh = test::l_tube(10);
+  for (const double distance : {0.15, 0.18, 0.2, 0.21, 0.25}) {
+    const OffsetResult result = offset(mesh.view(), {.distance = -distance, .corners = Corners::Round});
+    for (const Vec3d& end : result.positions) {
+      CAPTURE(distance, end);
+      CHECK(inside(end));
+      CHECK(test::brute_force_distance(mesh.view(), end) == Approx(distance).epsilon(1e-8));
+    }
+  }
 }

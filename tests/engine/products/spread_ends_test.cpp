@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "support/oracles.h"
+#include "support/solids.h"
 #include "valid/faults/triangle_crossings.h"
 #include "vdb_offset/cells.h"
 #include "vdb_offset/layers.h"
@@ -19,29 +20,6 @@ std::vector<Distances> even(double total, int count) {
   std::vector<Distances> heights;
   for (int k = 1; k <= count; ++k) heights.emplace_back(total * k / count);
   return heights;
-}
-
-/// A tube of quads with an L for its section, open at both ends.
-Polygons l_tube(int segments) {
-  const std::vector<std::array<double, 2>> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
-  std::vector<std::array<double, 2>> ring;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
-    const int count = segments * static_cast<int>(std::abs(b[0] - a[0]) + std::abs(b[1] - a[1]));
-    for (int k = 0; k < count; ++k)
-      ring.push_back({a[0] + (b[0] - a[0]) * k / count, a[1] + (b[1] - a[1]) * k / count});
-  }
-  Polygons mesh;
-  constexpr std::uint32_t kStations = 4;
-  const auto n = static_cast<std::uint32_t>(ring.size());
-  for (std::uint32_t j = 0; j <= kStations; ++j)
-    for (const auto& [x, y] : ring) mesh.positions.emplace_back(x, y, static_cast<double>(j) / segments);
-  for (std::uint32_t j = 0; j < kStations; ++j)
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const std::uint32_t a = j * n + i, b = j * n + (i + 1) % n;
-      mesh.add_face({a, b, b + n, a + n});
-    }
-  return mesh;
 }
 
 /// The shortest edge of the outermost layer, by that of the wall.
@@ -85,7 +63,7 @@ void require_spread(const Polygons& mesh, double total, double least_jacobian) {
 TEST_CASE("spread ends: over a concave edge, edges keep a fifth of the wall's", "[layers]") {
   // Three spacings, and far more.
   const auto total = GENERATE(0.05, 0.12, 0.3, 0.5, -0.1);
-  require_spread(l_tube(10), total, 0.5);
+  require_spread(test::l_tube(10), total, 0.5);
 }
 
 TEST_CASE("spread ends: in concave corners, vertices of edges stay on them", "[layers]") {
@@ -106,7 +84,7 @@ TEST_CASE("spread ends: in concave corners, vertices of edges stay on them", "[l
 }
 
 TEST_CASE("spread ends: the wall's right angles stay in the lower third", "[layers]") {
-  const Polygons mesh = l_tube(10);
+  const Polygons mesh = test::l_tube(10);
   const LayersResult layers = grow_layers(mesh.view(), even(0.3, 12), {});
   // Over the flat faces at the concave edge, whose normals are x and y.
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
@@ -132,7 +110,7 @@ TEST_CASE("spread ends: where all shrinks alike, vertices stay where their paths
 }
 
 TEST_CASE("spread ends: the same for any number of threads", "[layers]") {
-  const Polygons mesh = l_tube(10);
+  const Polygons mesh = test::l_tube(10);
   OffsetOptions one, two;
   one.threads = 1, two.threads = 2;
   const LayersResult a = grow_layers(mesh.view(), even(0.3, 4), one), b = grow_layers(mesh.view(), even(0.3, 4), two);

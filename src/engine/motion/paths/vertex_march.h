@@ -190,19 +190,35 @@ class VertexMarch {
       if (stops.empty()) return;
       if (i == kMaxSteps || !(largest.since_growth < kPatience * last)) break;
       if (trace_) trace_->push_back(here.x - origin_);
-      double step = longest_step(here.phi, last);
-      const Vec3d ahead = runge_kutta(here, step), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
-      report_stops_before(to, here, stops, report);
+      Step step = step_from(here, longest_step(here.phi, last));
+      if (step.length > here.phi && is_behind(step.end)) step = step_from(here, kFreeShare * here.phi);
+      report_stops_before(step.end.x, here, stops, report);
       if (stops.empty()) return;
-      const Sample next = measure(to);
-      largest.add_step(here, next, step, corner_count());
+      largest.add_step(here, step.end, step.length, corner_count());
       before = here;
-      here = next;
-      if (to != ahead) return report_blocked(before, here, stops, report);
+      here = step.end;
+      hint_ = here.triangle;
+      if (step.blocked) return report_blocked(before, here, stops, report);
     }
     const Sample end = climb(largest);
     if (trace_) trace_->resize(largest.corners);
     for (const StopDistance& stop : stops) report_at(end, stop, report);
+  }
+
+  /// What a step has come to.
+  struct Step {
+    double length;
+    bool blocked;  ///< It ends at an obstacle.
+    Sample end;
+  };
+
+  /// A step along the direction field, of the length or, where the path bends, less.
+  Step step_from(const Sample& here, double length) {
+    const Vec3d ahead = runge_kutta(here, length), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
+    hint_ = here.triangle;
+    const Sample end = measure(to);
+    hint_ = here.triangle;
+    return {length, to != ahead, end};
   }
 
   std::size_t corner_count() const { return trace_ ? trace_->size() : 0; }
@@ -273,6 +289,11 @@ class VertexMarch {
     return sample_at(x, hint_, nearest);
   }
   double first_step() const { return 0.1 * std::min(target_, h_); }
+  /// Whether the face that is closest to a point turns its other side to it: after a step longer than the distance, the
+  /// path has crossed it.
+  bool is_behind(const Sample& at) const {
+    return surface_.facts.oriented() && side_ * surface_.pseudonormal(at.triangle, at.feature).dot(at.away) < 0;
+  }
   bool arrived(double phi) const { return std::abs(phi - target_) <= kStopTolerance * target_; }
 
   /// Whether nothing lies on a line from the vertex, between the lengths `from` and `to` < `from`: covers it with balls
