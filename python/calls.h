@@ -35,9 +35,10 @@ py::dict iso_arrays(const py::object& vertices, const py::object& faces, const p
 py::dict iso_shell_arrays(const py::object& vertices, const py::object& faces, const py::object& distance,
                           const py::object& inner, const py::dict& keywords, const py::object& progress);
 
-/// A distance as a number, or as an array with one for each vertex.
-py::object evaluate(Input input, const py::object& vertices, const py::object& faces, const py::object& distance,
-                    const py::dict& keywords);
+/// The heights of layers, by what is known of them: `count`, `growth`, `first`, `total` and `last`, of which some are
+/// None. Each is a number, or an array with one for each vertex.
+py::list plan(Input input, const py::object& vertices, const py::object& faces, const py::dict& known,
+              const py::dict& keywords);
 
 /// Layers, filled with cells.
 py::dict layer_arrays(Input input, const py::object& vertices, const py::object& faces, const py::list& heights,

@@ -25,7 +25,8 @@ Distances distances_of_text(const std::string& text, const Source& source, const
     throw InvalidInput(what + ": expected an expression without u and v, as " +
                        (source.curves() ? "curves have no texture coordinates" : "no texture was given"));
   };
-  return distances_of(parse_distance_or_expression(text), mesh, normals, texture);
+  const auto edges = [&] { return source.curves() ? curve_edges(mesh) : mean_edges(mesh, asked.options.weld); };
+  return distances_of(parse_distance_or_expression(text), mesh, {normals, texture, edges});
 }
 
 }  // namespace

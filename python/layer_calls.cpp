@@ -2,6 +2,7 @@
 // Calls for layers of cells.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -13,17 +14,29 @@
 #include "keywords.h"
 #include "results.h"
 #include "vdb_offset/curve_offset.h"
+#include "vdb_offset/layer_plan.h"
 #include "vdb_offset/run.h"
 #include "volume_arrays.h"
 
 namespace vdb_offset::python {
 
-py::object evaluate(Input input, const py::object& vertices, const py::object& faces, const py::object& distance,
-                    const py::dict& keywords) {
+py::list plan(Input input, const py::object& vertices, const py::object& faces, const py::dict& known,
+              const py::dict& keywords) {
   const Source source(input, vertices, faces, keywords);
-  const Distances distances = distances_of(distance, source, asked_options(keywords, source));
-  if (distances.uniform()) return py::float_(distances[0]);
-  return distances_array(distances, source.view().positions.size());
+  const AskedOptions asked = asked_options(keywords, source);
+  const auto length = [&](const char* name) -> std::optional<Distances> {
+    const py::object given = known[name];
+    if (given.is_none()) return std::nullopt;
+    return distances_of(given, source, asked, name);
+  };
+  LayerPlan layers{.first = length("first"), .total = length("total"), .last = length("last")};
+  if (!known["count"].is_none()) layers.count = known["count"].cast<std::size_t>();
+  if (!known["growth"].is_none()) layers.growth = known["growth"].cast<double>();
+  py::list heights;
+  for (const Distances& each : plan_layers(layers))
+    if (each.uniform()) heights.append(each[0]);
+    else heights.append(distances_array(each, source.view().positions.size()));
+  return heights;
 }
 
 namespace {

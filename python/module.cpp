@@ -7,6 +7,7 @@
 #include "interruptible.h"
 #include "results.h"
 #include "vdb_offset/api.h"
+#include "vdb_offset/layer_plan.h"
 #include "vdb_offset/result.h"
 #include "vdb_offset/run.h"
 
@@ -104,8 +105,9 @@ PYBIND11_MODULE(_core, module) {
   module.def("shell", &shell_arrays);
   module.def("iso_surface", &iso_arrays);
   module.def("iso_shell", &iso_shell_arrays);
-  module.def("evaluate", with(&evaluate, Input::Mesh));
-  module.def("evaluate_curves", with(&evaluate, Input::Curves));
+  module.def("plan", with(&plan, Input::Mesh));
+  module.def("plan_curves", with(&plan, Input::Curves));
+  module.def("height_of_y_plus", &height_of_y_plus);
   module.def("layers", with(&layer_arrays, Input::Mesh));
   module.def("curve_layers", with(&layer_arrays, Input::Curves));
   module.def("structured_layers", with(&block_arrays, Input::Mesh));

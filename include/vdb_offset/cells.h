@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vdb_offset/api.h"
+#include "vdb_offset/layer_plan.h"
 #include "vdb_offset/layers.h"
 #include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
@@ -265,6 +266,7 @@ struct LayerReport {
   double least_segment = 1;           ///< See LayerQuality.
   double volume = 0;                  ///< Of all cells, world units^3; on curves their area, ^2.
   std::size_t points = 0;
+  LayerGrowth growth;  ///< As asked for.
   LayerStatistics growing;
   std::optional<FillReport> fill;        ///< If the rest of the domain was filled.
   std::optional<FoamQuality> foam;       ///< If a mesh has been written for OpenFOAM.

@@ -86,6 +86,21 @@ struct VertexVariables {
   std::span<const Vec3d> normals;    ///< nx, ny, nz: unit length (see vertex_normals() in mesh_facts.h).
   std::span<const Vec2d> texture;    ///< u, v (see io::vertex_texture() in io/mesh_file.h).
   double diagonal = 0;  ///< Diagonal of the bounding box of the vertices in use, which percentages refer to.
+  std::span<const double> edges{};  ///< edge: mean length of a vertex's edges (see mean_edges() in mesh_facts.h).
+};
+
+/// The same of one point.
+struct PointVariables {
+  Vec3d position{0.0}, normal{0.0};
+  Vec2d texture{0.0};
+  double edge = 0;
+};
+
+/// What finds them for a mesh: each is called only if an expression uses it.
+struct VariableSources {
+  std::function<std::vector<Vec3d>()> normals;
+  std::function<std::vector<Vec2d>()> texture;
+  std::function<std::vector<double>()> edges;
 };
 
 /// A distance that differs from vertex to vertex, as users write it: world units ("0.1 + 0.05*sin(4*pi*z)"), or with a
@@ -105,15 +120,16 @@ class VDB_OFFSET_API DistanceExpression {
   bool uses(std::string_view name) const;
   bool uses_normals() const { return uses("nx") || uses("ny") || uses("nz"); }
   bool uses_texture() const { return uses("u") || uses("v"); }
+  bool uses_edges() const { return uses("edge"); }
 
   /// The distance at every vertex, world units. The result does not depend on the number of threads.
   /// \throw InvalidInput if what is used was not given for every vertex, or names the first vertex (an index, counted
   /// from 0) at which the result is a NaN or an infinity.
   std::vector<double> operator()(const VertexVariables& at) const;
 
-  /// The distance at single points, of which the position, the unit normal and (u, v) are given: for many calls from
-  /// one thread. What is returned throws InvalidInput where the result is a NaN or an infinity.
-  std::function<double(const Vec3d&, const Vec3d&, const Vec2d&)> at_points(double diagonal) const;
+  /// The distance at single points: for many calls from one thread. What is returned throws InvalidInput where the
+  /// result is a NaN or an infinity.
+  std::function<double(const PointVariables&)> at_points(double diagonal) const;
 
  private:
   std::string text_;
@@ -136,11 +152,7 @@ VDB_OFFSET_API GivenDistance parse_distance(const std::string& text);
 /// Parses a number as parse_distance() does, or else an expression. \throw InvalidExpression
 VDB_OFFSET_API GivenDistance parse_distance_or_expression(const std::string& text);
 
-/// The distances of a mesh's vertices, or of curves' points. `normals_of` and `texture_of` are called only by an
-/// expression that uses normals or texture coordinates.
-/// \throw InvalidInput, see DistanceExpression
-VDB_OFFSET_API Distances distances_of(const GivenDistance& distance, PolygonView mesh,
-                                      const std::function<std::vector<Vec3d>()>& normals_of,
-                                      const std::function<std::vector<Vec2d>()>& texture_of);
+/// The distances of a mesh's vertices, or of curves' points. \throw InvalidInput, see DistanceExpression
+VDB_OFFSET_API Distances distances_of(const GivenDistance& distance, PolygonView mesh, const VariableSources& sources);
 
 }  // namespace vdb_offset

@@ -126,4 +126,8 @@ VDB_OFFSET_API double used_diagonal(PolygonView mesh);
 VDB_OFFSET_API std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld = {},
                                                  Orient orient = Orient::Keep);
 
+/// Mean length of the sides of the faces around each vertex, of the welded surface; 0 for a vertex that no face uses.
+/// \throw InvalidInput as build_surface()
+VDB_OFFSET_API std::vector<double> mean_edges(PolygonView polygons, const WeldOptions& weld = {});
+
 }  // namespace vdb_offset

@@ -66,6 +66,9 @@ using Curves = Polygons;
 /// points on no curve, and where segments turn back on each other. \throw InvalidInput as plane_of()
 VDB_OFFSET_API std::vector<Vec3d> curve_normals(CurvesView curves);
 
+/// Mean length of the segments that meet at each point; 0 for points on no curve. \throw InvalidInput as plane_of()
+VDB_OFFSET_API std::vector<double> curve_edges(CurvesView curves);
+
 /// An open curve, and how far its ends are apart.
 struct VDB_OFFSET_API OpenCurve {
   std::uint32_t first, last;  ///< Points of the input.

@@ -31,6 +31,7 @@ from ._calls import (
     check_curves,
     curve_layers,
     fit,
+    height_of_y_plus,
     iso_shell,
     iso_surface,
     iso_surface_several,
@@ -62,7 +63,7 @@ from .meshes import arrays_of, offset_mesh, with_positions
 __all__ = [
     "Block", "Cancelled", "Check", "Error", "InvalidExpression", "InvalidInput", "InvalidOption",
     "InvalidResult", "Iso", "IsoShell", "Layers", "Offset", "OutOfBudget", "Refined", "STATES", "Shell", "arrays_of", "check", "check_curves",
-    "curve_layers", "fit", "iso_shell", "iso_surface", "iso_surface_several", "layers", "offset", "offset_curves",
-    "offset_curves_several", "offset_mesh", "offset_several", "offset_to_tolerance", "shell", "shell_several",
+    "curve_layers", "fit", "height_of_y_plus", "iso_shell", "iso_surface", "iso_surface_several", "layers", "offset",
+    "offset_curves", "offset_curves_several", "offset_mesh", "offset_several", "offset_to_tolerance", "shell", "shell_several",
     "structured_curve_layers", "structured_layers", "with_positions",
 ]

@@ -166,33 +166,47 @@ def shell(vertices: np.ndarray, faces: Faces, distance: Distance, **options: Any
 _MOST_LAYERS, _MOST_GROWTH = 1000, 10
 
 
-def _heights(evaluate: Callable[..., Any], arrays: Sequence[Any], heights: Any, keywords: Dict[str, Any],
+def _heights(plan: Callable[..., List[Any]], arrays: Sequence[Any], heights: Any, keywords: Dict[str, Any],
              unit: Optional[str]) -> List[Any]:
-    """The heights of layers: those that are given, or `count` whose thickness grows by a factor. Takes the keywords
-    that say so out of the others."""
-    count, first, total = (keywords.pop(name, None) for name in ("count", "first", "total"))
-    growth = keywords.pop("growth", None)
+    """The heights of layers: those that are given, or as planned. Takes the keywords that say so out of the others."""
+    known = {name: keywords.pop(name, None) for name in ("count", "growth", "first", "total", "last")}
+    count, growth = known["count"], known["growth"]
+    thicknesses = sum(known[name] is not None for name in ("first", "total", "last"))
     if heights is not None:
-        for name, value in (("first", first), ("total", total), ("growth", growth)):
-            if value is not None:
+        for name in ("first", "total", "last", "growth"):
+            if known[name] is not None:
                 raise _core.InvalidOption(f"{name} and heights exclude each other")
         each = lengths("heights", heights, unit)
         if count is not None and count != len(each):
             raise _core.InvalidOption(f"count: expected {len(each)}, as many as there are heights, got {count!r}")
         return each
-    if count is None or (first is None) == (total is None):
-        raise _core.InvalidOption("expected heights, or a count with one of first and total")
-    if not (isinstance(count, (int, np.integer)) and 1 <= count <= _MOST_LAYERS) or isinstance(count, bool):
+    if count is None and (thicknesses != 2 or known["first"] is None):
+        raise _core.InvalidOption("expected heights, or a count with one of first, total and last, or first with one of "
+                                  "the others")
+    if count is not None and not (thicknesses == 1 or (thicknesses == 2 and growth is None)):
+        raise _core.InvalidOption("expected a count with two of first, total, last and growth, or one of first, total "
+                                  "and last")
+    if count is not None and (not (isinstance(count, (int, np.integer)) and 1 <= count <= _MOST_LAYERS)
+                              or isinstance(count, bool)):
         raise _core.InvalidOption(f"count: expected a whole number, 1 to {_MOST_LAYERS}, got {count!r}")
-    growth = 1.2 if growth is None else growth
-    if not (isinstance(growth, (int, float, np.number)) and 0 < growth <= _MOST_GROWTH):
+    if growth is None and (count is None or thicknesses == 1):
+        growth = known["growth"] = 1.2
+    if growth is not None and not (isinstance(growth, (int, float, np.number)) and 0 < growth <= _MOST_GROWTH):
         raise _core.InvalidOption(f"growth: expected a number above 0, up to {_MOST_GROWTH}, got {growth!r}")
-    base = evaluate(*arrays, first if first is not None else total, keywords)
-    factors, step = [], 1.0
-    for _ in range(count):
-        factors.append((factors[-1] if factors else 0.0) + step)
-        step *= growth
-    return [base * (factor if first is not None else factor / factors[-1]) for factor in factors]
+    return plan(*arrays, known, keywords)
+
+
+def height_of_y_plus(y_plus: float, reynolds: float, length: float = 1.0) -> float:
+    """The height over a wall at which y+ has a value, for `first`, by the law for a flat plate: length y+ / (Re sqrt(c_f
+    / 2)), with the larger c_f of Schlichting's (2 log10 Re - 0.65)^-2.3 and Blasius' 0.664 / sqrt(Re).
+
+    :param reynolds: that of the length
+    :raises InvalidInput: for numbers that are not above 0
+
+    >>> height_of_y_plus(1, 1e6)
+    2.31079e-05
+    """
+    return _core.height_of_y_plus(y_plus, reynolds) * length
 
 
 @takes(_options.LAYERS)
@@ -210,7 +224,7 @@ def layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distan
     ([0.0, 0.1, 0.3, 0.7], [12, 12, 12])
     """
     keywords, progress = given(layers, options)
-    wanted = _heights(_core.evaluate, (vertices, faces), heights, keywords, options.get("unit"))
+    wanted = _heights(_core.plan, (vertices, faces), heights, keywords, options.get("unit"))
     return Layers(**_core.layers(vertices, faces, wanted, keywords, progress))
 
 
@@ -222,7 +236,7 @@ def curve_layers(points: np.ndarray, curves: Faces, heights: Optional[Sequence[D
     :param options: by keyword; `help()` describes each
     """
     keywords, progress = given(curve_layers, options)
-    wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords, options.get("unit"))
+    wanted = _heights(_core.plan_curves, (points, curves), heights, keywords, options.get("unit"))
     return Layers(**_core.curve_layers(points, curves, wanted, keywords, progress))
 
 
@@ -286,7 +300,7 @@ def structured_layers(vertices: np.ndarray, faces: Faces, heights: Optional[Sequ
     [[0.0, 0.0, 0.0], [0.0, 0.0, 0.1], [0.0, 0.0, 0.3]]
     """
     keywords, progress = given(structured_layers, options)
-    wanted = _heights(_core.evaluate, (vertices, faces), heights, keywords, options.get("unit"))
+    wanted = _heights(_core.plan, (vertices, faces), heights, keywords, options.get("unit"))
     return Block(**_core.structured_layers(vertices, faces, wanted, keywords, progress))
 
 
@@ -298,7 +312,7 @@ def structured_curve_layers(points: np.ndarray, curves: Faces, heights: Optional
     :param options: by keyword; `help()` describes each
     """
     keywords, progress = given(structured_curve_layers, options)
-    wanted = _heights(_core.evaluate_curves, (points, curves), heights, keywords, options.get("unit"))
+    wanted = _heights(_core.plan_curves, (points, curves), heights, keywords, options.get("unit"))
     return Block(**_core.structured_curve_layers(points, curves, wanted, keywords, progress))
 
 

@@ -120,10 +120,14 @@ def shell(
     threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Shell: ...
 
+def height_of_y_plus(
+    y_plus: float, reynolds: float, length: float = 1.0
+) -> float: ...
+
 def layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-    growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
+    last: Optional[Distance] = None, growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
     cells: Literal['any', 'openfoam'] = 'any', fan_angle: Optional[float] = None,
     corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
@@ -139,12 +143,13 @@ def layers(
 
 def curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
-    first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
-    fan_angle: Optional[float] = None, corners: Optional[Literal['miter', 'round', 'arc']] = None,
-    miter_limit: Optional[float] = None, close: bool = False,
-    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
-    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
-    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    first: Optional[Distance] = None, total: Optional[Distance] = None, last: Optional[Distance] = None,
+    growth: Optional[float] = None, fan_angle: Optional[float] = None,
+    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
+    close: bool = False, precision: Union[Literal['double', 'single'], int] = 'double',
+    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
+    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
+    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Layers: ...
 
 def iso_surface(
@@ -180,7 +185,7 @@ def iso_shell(
 def structured_layers(
     vertices: np.ndarray, faces: Faces, heights: Optional[Sequence[Distance]] = None, *,
     count: Optional[int] = None, first: Optional[Distance] = None, total: Optional[Distance] = None,
-    growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
+    last: Optional[Distance] = None, growth: Optional[float] = None, walls: Optional[Sequence[str]] = None,
     corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
     only: Optional[np.ndarray] = None, border: Literal['slide', 'fixed', 'free'] = 'slide',
     symmetry: Union[bool, str, Sequence[Union[str, Sequence[float]]]] = True,
@@ -195,12 +200,12 @@ def structured_layers(
 
 def structured_curve_layers(
     points: np.ndarray, curves: Faces, heights: Optional[Sequence[Distance]] = None, *, count: Optional[int] = None,
-    first: Optional[Distance] = None, total: Optional[Distance] = None, growth: Optional[float] = None,
-    corners: Optional[Literal['miter', 'round', 'arc']] = None, miter_limit: Optional[float] = None,
-    close: bool = False, precision: Union[Literal['double', 'single'], int] = 'double',
-    voxel_size: Union[float, str, None] = None, voxels_per_distance: Optional[float] = None,
-    unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None, threads: int = 0,
-    max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
+    first: Optional[Distance] = None, total: Optional[Distance] = None, last: Optional[Distance] = None,
+    growth: Optional[float] = None, corners: Optional[Literal['miter', 'round', 'arc']] = None,
+    miter_limit: Optional[float] = None, close: bool = False,
+    precision: Union[Literal['double', 'single'], int] = 'double', voxel_size: Union[float, str, None] = None,
+    voxels_per_distance: Optional[float] = None, unit: Optional[Literal['um', 'mm', 'cm', 'm', 'in', 'ft']] = None,
+    threads: int = 0, max_memory: Union[int, str, None] = None, reserve: Reserve = None, progress: Progress = None
 ) -> Block: ...
 
 def check(

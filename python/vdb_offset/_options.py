@@ -32,10 +32,15 @@ class Option(NamedTuple):
 OPTIONS: Dict[str, Option] = {
     "inner": Option(Optional[Distance], None,
                     "how far inward the inner skin lies, not negative; None: on the mesh itself", str),
-    "count": Option(Optional[int], None, "instead of heights: how many layers, with"),
-    "first": Option(Optional[Distance], None, "the height of the first one, or", str),
-    "total": Option(Optional[Distance], None, "that of the last one, and", str),
-    "growth": Option(Optional[float], None, "how many times as thick each layer is as the one before; None: 1.2"),
+    "count": Option(Optional[int], None,
+                    "instead of heights: how many layers, with two of the next; None: as many as `growth` allows, with\n"
+                    "`first` and one of `total` and `last`"),
+    "first": Option(Optional[Distance], None, "how thick the first layer is", str),
+    "total": Option(Optional[Distance], None, "how thick all layers together are", str),
+    "last": Option(Optional[Distance], None,
+                   'how thick the outermost layer is; "edge": as the mean length of the edges around each vertex', str),
+    "growth": Option(Optional[float], None,
+                     "how many times as thick each layer is as the one before; None: as the others say, or 1.2"),
     "walls": Option(Optional[Sequence[str]], None,
                     "(m,) texts: the name of the patch of each face of the wall, which the result has in `patches`;\n"
                     'None: all are "wall"'),
@@ -110,7 +115,7 @@ OPTIONS: Dict[str, Option] = {
                        "module); \"tqdm\": a bar by that package"),
 }
 
-_HEIGHTS = ["count", "first", "total", "growth"]
+_HEIGHTS = ["count", "first", "total", "last", "growth"]
 _OF_LAYERS = [*_HEIGHTS, "walls", "cells", "fan_angle"]
 _OF_ISO = ["inside", "adaptivity", "keep_specks"]
 _COMMON = ["precision", "voxel_size", "voxels_per_distance", "unit", "threads", "max_memory", "reserve", "progress"]

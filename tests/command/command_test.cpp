@@ -762,8 +762,8 @@ TEST_CASE("command: options of layers that do not go together", "[command][layer
   for (const auto& [arguments, message] :
        {std::pair{"out.cgns --distance 1", "--layers"},
         {"out.obj --distance 1 --growth 1.2", "--growth needs --layers"},
-        {"out.vtu --layers 3", "needs one of --first-height"},
-        {"out.vtu --layers 3 --first-height 1 --total-thickness 2", "needs one of"},
+        {"out.vtu --layers 3", "needs --first-height"},
+        {"out.vtu --layers 3 --first-height 1 --total-thickness 2 --growth 2", "expected three of"},
         {"out.vtu --layers 0 --first-height 1", "--layers: expected 1 to 1000"},
         {"out.vtu --layers 2 --first-height 1 --growth 0", "--growth: expected"},
         {"out.vtu --layers 2 --first-height 'x+' ", "--first-height"},

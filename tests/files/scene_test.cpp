@@ -36,7 +36,7 @@ TEST_CASE("scenes: every one runs as it expects", "[scene][no_races]") {
     REQUIRE(scene.mesh_path.empty());
     OffsetOptions options;
     options.distance =
-        distances_of(scene.distance, scene.shape.view(), [&] { return vertex_normals(scene.shape.view()); }, {});
+        distances_of(scene.distance, scene.shape.view(), {[&] { return vertex_normals(scene.shape.view()); }, {}, {}});
     scene.set(options);
     const bool fits = scene.to_fit.face_count() > 0;
     CHECK(fits == scene.expect.min_gap.has_value());

@@ -102,7 +102,8 @@ class Lengths(BesideTheCommand):
                  "weld": lambda text: vdb_offset.offset(*box, 0.1, weld=text),
                  "heights": lambda text: vdb_offset.structured_layers(*box, [text]),
                  "first": lambda text: vdb_offset.layers(*box, count=1, first=text),
-                 "total": lambda text: vdb_offset.layers(*box, count=1, total=text)}
+                 "total": lambda text: vdb_offset.layers(*box, count=1, total=text),
+                 "last": lambda text: vdb_offset.layers(*box, count=1, last=text)}
         self.assertEqual({name for name, option in _options.OPTIONS.items() if option.length} - set(calls), set())
         for name, call in calls.items():
             with self.subTest(name), self.assertRaisesRegex(vdb_offset.InvalidOption, f"^{name} '2mm' needs unit=, e.g. unit='mm'"):

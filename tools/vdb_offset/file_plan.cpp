@@ -78,8 +78,7 @@ std::vector<RunFile> files_read(const Request& request, std::span<const std::str
   if (request.inner) add_source_of(files, "--inner", *request.inner);
   if (!request.layers) return files;
   add(files, "--heights", request.layers->heights);
-  if (request.layers->first) add_source_of(files, "--first-height", *request.layers->first);
-  if (request.layers->total) add_source_of(files, "--total-thickness", *request.layers->total);
+  for (const auto& [option, asked] : request.layers->lengths()) add_source_of(files, option, *asked);
   return files;
 }
 
@@ -216,12 +215,13 @@ bool is_standard_output(const std::string& path) {
 
 std::vector<RunFile> surroundings_of(const Request& request) {
   std::vector<RunFile> files;
+  const char* const of_part = request.layers ? "--layers-of" : "--distance-of";
   for (const std::string& path : request.obstacles) add(files, "--obstacle", path);
   for (const io::Selector& part : request.only)
     if (part.by == io::Selector::By::File) add(files, "--only", part.name);
   for (const PartDistance& each : request.distances_of)
-    if (each.part.by == io::Selector::By::File) add(files, "--distance-of", each.part.name);
-  for (const PartDistance& each : request.distances_of) add_source_of(files, "--distance-of", each.distance);
+    if (each.part.by == io::Selector::By::File) add(files, of_part, each.part.name);
+  for (const PartDistance& each : request.distances_of) add_source_of(files, of_part, each.distance);
   for (const DistanceRequest& each : request.distances) add_source_of(files, request.distance_option, each);
   return files;
 }

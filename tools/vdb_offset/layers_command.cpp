@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flow.h"
 #include "messages.h"
 #include "page/run_pages.h"
 #include "summary/summary.h"
@@ -182,13 +183,7 @@ void rename_patches(const Request& request, VolumeMesh& mesh) {
 
 void write_case(const Job& job, const VolumeMesh& mesh) {
   const CaseRequest& request = job.request.solver_case;
-  io::Flow flow = request.flow;
-  Vec3d lowest = job.source.view().positions[0], highest = lowest;
-  for (const Vec3d& x : job.source.view().positions)
-    lowest = openvdb::math::minComponent(lowest, x), highest = openvdb::math::maxComponent(highest, x);
-  const Vec3d size = highest - lowest;
-  flow.length = request.length.value_or(std::max({size[0], size[1], size[2]}));
-  flow.viscosity = request.viscosity ? *request.viscosity : flow.speed * flow.length / *request.reynolds;
+  io::Flow flow = flow_of(job);
   if (job.curves()) flow.thickness = kThickness * used_diagonal(job.source.view());
   std::vector<io::CasePatch> patches;
   for (const BoundaryPatch& patch : mesh.patches)

@@ -79,8 +79,8 @@ io::CadReading cad_reading(const Request& request) {
   for (const DistanceRequest& each : request.distances) asked.push_back(&each);
   for (const PartDistance& each : request.distances_of) asked.push_back(&each.distance);
   if (request.inner) asked.push_back(&*request.inner);
-  if (request.layers && request.layers->first) asked.push_back(&*request.layers->first);
-  if (request.layers && request.layers->total) asked.push_back(&*request.layers->total);
+  if (request.layers)
+    for (const LayerLength& each : request.layers->lengths()) asked.push_back(each.asked);
   const GivenDistance* least = nullptr;
   for (const DistanceRequest* each : asked) {
     const GivenDistance& one = each->distance;

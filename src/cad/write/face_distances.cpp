@@ -27,8 +27,9 @@ FaceDistance expressed(const DistanceExpression& expression, const TopoDS_Face& 
                     double u, double v) {
     const gp_Pnt p = surface->Value(u, v);
     const gp_Vec n = unit_normal(*surface, u, v, range) * sign;
-    return millimetres * at_point(Vec3d(p.X(), p.Y(), p.Z()) / millimetres, Vec3d(n.X(), n.Y(), n.Z()),
-                                  Vec2d(share_of(u, range.u0, range.u1), share_of(v, range.v0, range.v1)));
+    return millimetres * at_point({.position = Vec3d(p.X(), p.Y(), p.Z()) / millimetres,
+                                   .normal = Vec3d(n.X(), n.Y(), n.Z()),
+                                   .texture = Vec2d(share_of(u, range.u0, range.u1), share_of(v, range.v0, range.v1))});
   };
   return distance;
 }

@@ -89,8 +89,8 @@ TEST_CASE("expression: values are those of the formula", "[distances]") {
 TEST_CASE("expression: what is wrong is told with its column", "[distances]") {
   const std::string operand = "a number, a name, a function or '('";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"0.1*foo", "column 5: unknown name 'foo' (there are x, y, z, nx, ny, nz, u, v, pi, e)"},
-      {"_pi", "column 1: unknown name '_pi' (there are x, y, z, nx, ny, nz, u, v, pi, e)"},
+      {"0.1*foo", "column 5: unknown name 'foo' (there are x, y, z, nx, ny, nz, u, v, edge, pi, e)"},
+      {"_pi", "column 1: unknown name '_pi' (there are x, y, z, nx, ny, nz, u, v, edge, pi, e)"},
       {"", "column 1: expected " + operand + ", got the end"},
       {"  ", "column 3: expected " + operand + ", got the end"},
       {"x + ", "column 5: expected " + operand + ", got the end"},

@@ -45,7 +45,10 @@ Distances evaluate(const Job& job, const DistanceRequest& request) {
     return source.curves ? curve_normals(source.view())
                          : vertex_normals(source.view(), job.options.weld, job.options.orient);
   };
-  return distances_of(request.distance, source.view(), normals_of, texture_of);
+  const auto edges_of = [&] {
+    return source.curves ? curve_edges(source.view()) : mean_edges(source.view(), job.options.weld);
+  };
+  return distances_of(request.distance, source.view(), {normals_of, texture_of, edges_of});
 }
 
 Distances scaled(const Distances& distances, double factor) {

@@ -4,30 +4,49 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "distances/evaluate.h"
+#include "distances/part_distances.h"
+#include "flow.h"
 #include "request/option_values.h"
 #include "vdb_offset/io/file_bytes.h"
+#include "vdb_offset/layer_plan.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::tool {
 namespace {
 
-/// The heights of layers whose thickness grows by a factor from one to the next.
-std::vector<Distances> geometric_heights(const Job& job) {
+/// One of the lengths of layers, of which parts may have their own.
+std::optional<Distances> length_of(const Job& job, const std::optional<DistanceRequest>& asked, bool of_parts) {
+  if (!asked) return std::nullopt;
+  return of_parts && are_of_parts(job, *asked) ? distances_of_parts(job, *asked).of_vertices() : evaluate(job, *asked);
+}
+
+/// The first height at which y+ has the value that is asked for, of which parts may have their own.
+Distances first_of_y_plus(const Job& job, double y_plus) {
+  const io::Flow flow = flow_of(job);
+  const double height = height_of_y_plus(std::abs(y_plus), flow.speed * flow.length / flow.viscosity) * flow.length;
+  return *length_of(job, DistanceRequest{"", {.value = y_plus < 0 ? -height : height}, {}}, true);
+}
+
+/// The heights of layers each of which is thicker by one factor than that below.
+std::vector<Distances> planned_heights(const Job& job) {
   const LayersRequest& layers = *job.request.layers;
-  std::vector<double> factors;  // of each layer: its height as a multiple of the first layer's
-  factors.reserve(layers.count);
-  double sum = 0, step = 1;
-  for (std::size_t k = 0; k < layers.count; ++k, step *= layers.growth) factors.push_back(sum += step);
-  const Distances given = evaluate(job, layers.first ? *layers.first : *layers.total);
-  std::vector<Distances> heights;
-  heights.reserve(factors.size());
-  for (const double factor : factors) heights.push_back(scaled(given, layers.first ? factor : factor / sum));
-  return heights;
+  if (job.request.blend.value > 0 && job.request.distances_of.empty())
+    throw InvalidOption("--blend: expected --layers-of");
+  LayerPlan plan;
+  if (layers.count > 0) plan.count = layers.count;
+  plan.growth = layers.growth;
+  plan.first = layers.y_plus ? first_of_y_plus(job, *layers.y_plus) : length_of(job, layers.first, true);
+  plan.total = length_of(job, layers.total, !plan.first);
+  plan.last = length_of(job, layers.last, !plan.first && !plan.total);
+  return plan_layers(plan);
 }
 
 constexpr std::size_t kLongestHeight = 4096;  // bytes: twice the longest expression, or the longest path
@@ -73,7 +92,7 @@ std::vector<Distances> read_heights(Job& job) {
 }  // namespace
 
 std::vector<Distances> heights_of_layers(Job& job) {
-  return job.request.layers->heights.empty() ? geometric_heights(job) : read_heights(job);
+  return job.request.layers->heights.empty() ? planned_heights(job) : read_heights(job);
 }
 
 }  // namespace vdb_offset::tool

@@ -57,16 +57,20 @@ class CornerVariables {
     };
     if (any([](const DistanceExpression& e) { return e.uses_normals(); })) find_normals(job);
     if (any([](const DistanceExpression& e) { return e.uses_texture(); })) find_texture(*job.source.file);
+    if (any([](const DistanceExpression& e) { return e.uses_edges(); })) edges_ = mean_edges(mesh_, job.options.weld);
     if (any([](const DistanceExpression& e) { return e.is_percent(); })) diagonal_ = used_diagonal(mesh_);
   }
 
   double diagonal() const { return diagonal_; }
-  const Vec3d& position(std::size_t corner) const { return mesh_.positions[mesh_.corners[corner]]; }
-  Vec3d normal(std::size_t corner) const {
-    if (!corner_normals_.empty()) return corner_normals_[corner];
-    return vertex_normals_.empty() ? Vec3d(0.0) : vertex_normals_[mesh_.corners[corner]];
+  PointVariables operator()(std::size_t corner) const {
+    const std::uint32_t v = mesh_.corners[corner];
+    PointVariables at{.position = mesh_.positions[v]};
+    if (!corner_normals_.empty()) at.normal = corner_normals_[corner];
+    else if (!vertex_normals_.empty()) at.normal = vertex_normals_[v];
+    if (!texture_.empty()) at.texture = texture_[corner];
+    if (!edges_.empty()) at.edge = edges_[v];
+    return at;
   }
-  Vec2d texture(std::size_t corner) const { return texture_.empty() ? Vec2d(0.0) : texture_[corner]; }
 
  private:
   void find_normals(const Job& job) {
@@ -92,6 +96,7 @@ class CornerVariables {
   std::span<const Vec3d> corner_normals_;
   std::vector<Vec3d> vertex_normals_;
   std::vector<Vec2d> texture_;
+  std::vector<double> edges_;
   double diagonal_ = 0;
 };
 
@@ -107,8 +112,7 @@ void add_corners(const Job& job, const DistanceRequest& rule, std::uint32_t numb
   };
   if (rule.distance.expression) {
     const auto at_point = rule.distance.expression->at_points(variables.diagonal());
-    for_each_corner(
-        [&](std::size_t c) { return at_point(variables.position(c), variables.normal(c), variables.texture(c)); });
+    for_each_corner([&](std::size_t c) { return at_point(variables(c)); });
   } else {
     const Distances of_vertices = evaluate(job, rule);
     for_each_corner([&](std::size_t c) { return of_vertices[mesh.corners[c]]; });
@@ -147,6 +151,10 @@ io::CadDistances cad_distances(const Job& job, const DistanceRequest& asked, con
     if (!rule->from.empty())
       throw InvalidInput(
           fmt::format("{}: expected a number or an expression, for an output that is a CAD model, got '{}'",
+                      job.request.output, rule->text));
+    if (rule->distance.expression && rule->distance.expression->uses_edges())
+      throw InvalidInput(
+          fmt::format("{}: expected a distance without 'edge', for an output that is a CAD model, got '{}'",
                       job.request.output, rule->text));
     if (rule->distance.expression) distances.each.push_back({0, rule->distance.expression});
     else distances.each.push_back({rule->distance.in_world_units(diagonal), {}});

@@ -25,9 +25,10 @@ namespace vdb_offset::tool {
 namespace {
 
 // Options whose values are lengths. The unit of the first of these that has one is that of what is printed.
-constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",    "inner",     "clearance",
-                                    "first-height", "total-thickness", "voxel-size",    "tolerance", "weld",
-                                    "flatten",      "deflection",      "fit-tolerance", "blend",     "fill-max"};
+constexpr const char* kLengths[] = {"distance",     "distance-xy",     "distance-z",  "inner",         "clearance",
+                                    "first-height", "total-thickness", "last-height", "voxel-size",    "tolerance",
+                                    "weld",         "flatten",         "deflection",  "fit-tolerance", "blend",
+                                    "fill-max"};
 
 // What other programs call it, and the option that is meant.
 constexpr std::pair<const char*, const char*> kCalledOtherwise[] = {{"--offset", "--distance"},
@@ -341,7 +342,7 @@ std::optional<double> unit_of_file(const std::string& path, const std::string& f
 std::string CommandLine::text_of(const CLI::Option& option, const std::string& given) {
   const std::string& name = option.get_lnames().front();
   const auto number = static_cast<std::size_t>(std::find(std::begin(kLengths), std::end(kLengths), name) - kLengths);
-  const bool is_of_part = name == "distance-of";
+  const bool is_of_part = name == "distance-of" || name == "layers-of";
   if (!unit_ || (number == std::size(kLengths) && !is_of_part)) return given;
   const auto file_unit = [this] {
     if (!unit_->empty()) return micrometres_of(*unit_);

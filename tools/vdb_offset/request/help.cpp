@@ -30,7 +30,7 @@ Examples:
   vdb_offset vase.stl shell.stl --distance -2 --shell          a closed solid, 2 units thick
   vdb_offset part.ply 'part_{d}.ply' --distance 1% --distance 2% --distance 3%
   vdb_offset wing.obj wing.vtu --layers 10 --first-height 0.02% --growth 1.2     cells for a solver
-  vdb_offset body.stl case/constant/polyMesh --layers 8 --first-height 0.1% --fill     all cells, out to 20 lengths
+  vdb_offset body.stl case/constant/polyMesh --first-height 0.1% --last-height edge --fill     all cells, out to 20 lengths
   vdb_offset part.stl out.stl --distance-xy -0.1 --distance-z -0.05      less across than up
   vdb_offset peg.stl out.stl --fit socket.stl --clearance 0.1           makes room where there is less
   vdb_offset part.obj out.obj --distance 1% --tolerance 2%     faces at the distance, too, to 2 % of it
@@ -74,10 +74,10 @@ std::span<const HelpTopic> help_topics() {
        {"shell", "inner", "mode", "adaptivity", "inside", "keep-specks", "transport"}},
       {"layers",
        "Layers of cells",
-       {"layers",     "first-height", "total-thickness", "growth",        "heights", "fan-angle",
-        "structured", "fill",         "fill-with",       "farfield",      "caps",    "fill-growth",
-        "fill-max",   "fill-quads",   "fill-seconds",    "layers-anyway", "patch",   "case",
-        "speed",      "direction",    "viscosity",       "reynolds",      "length"}},
+       {"layers",      "first-height",  "total-thickness", "last-height",  "growth",    "y-plus",   "layers-of",
+        "heights",     "fan-angle",     "structured",      "fill",         "fill-with", "farfield", "caps",
+        "fill-growth", "fill-max",      "fill-quads",      "fill-seconds", "patch",     "case",     "speed",
+        "direction",   "layers-anyway", "viscosity",       "density",      "reynolds",  "length"}},
       {"inputs",
        "Curves, CAD models and level sets",
        {"close", "flatten", "deflection", "angle", "cad-seconds", "fit-tolerance", "faceted", "grid", "isovalue"}},

@@ -21,7 +21,6 @@
 namespace vdb_offset::tool {
 namespace {
 
-constexpr int kMostLayers = 1000;  // --layers: so that a mistyped number does not fill the memory; not measured
 constexpr double kAny = std::numeric_limits<double>::max();
 // Numbers above this are 0 or more.
 constexpr double kBelowZero = -std::numeric_limits<double>::denorm_min();
@@ -139,17 +138,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
 }
 
 /// Declares the options that say what is made of the offset.
-/// The angle of fans over sharp edges, in degrees.
-double parse_fan_angle(const std::string& text) {
-  constexpr double kLeast = 5, kMost = 180;
-  constexpr const char* kExpected = "0, or degrees from 5 to 180";
-  const double angle = parse_number("--fan-angle", text, kExpected, kBelowZero, kMost);
-  if (angle > 0 && angle < kLeast) throw UsageError(fmt::format("--fan-angle: expected {}, got '{}'", kExpected, text));
-  return angle;
-}
-
-void declare_products(CommandLine& line, Draft& draft) {
-  Request& request = draft.request;
+void declare_products(CommandLine& line, Request& request) {
   line.flag("--shell",
             "Write the source and its offset as one closed solid, joined by a rim where the surface is open; with "
             "--mode iso: a hollow solid, the source's own faces and one clean cavity, or skin",
@@ -157,28 +146,6 @@ void declare_products(CommandLine& line, Draft& draft) {
   line.option("--inner", "E",
               "With --shell: put the inner skin this far inward, not on the source; with --mode iso both skins are new",
               [&request](const std::string& text) { request.inner = parse_inner(text, request); });
-  line.option("--layers", "N",
-              "Grow N layers of cells: with --first-height or --total-thickness, and --growth; OUTPUT is .vtu, .msh, "
-              ".cgns, .su2, a folder called polyMesh, or a mesh for each layer",
-              draft.layers.count, count_between("--layers", 1, kMostLayers));
-  line.option("--first-height", "A", "Height of the first layer, as --distance", [&](const std::string& text) {
-    draft.layers.first = parse_distance_of("--first-height", text, request);
-  });
-  line.option("--total-thickness", "T", "Height of all layers together, as --distance", [&](const std::string& text) {
-    draft.layers.total = parse_distance_of("--total-thickness", text, request);
-  });
-  line.option("--growth", "R", "Ratio of each layer's height to that of the layer below [1.2]", draft.layers.growth,
-              number_between("--growth", "a number above 0, up to 10", 0, 10));
-  line.option("--heights", "FILE", "A file of heights above the wall, one in each line, each as --distance",
-              draft.layers.heights);
-  line.option(
-      "--fan-angle", "A",
-      "Open edges that bend by more than A degrees into fans of cells, no two sides of which are farther apart; "
-      "5 to 180, or 0 for none [60 for files of cells without --corners miter, else 0]",
-      draft.layers.fan_angle, parse_fan_angle);
-  line.flag("--structured",
-            "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
-            draft.layers.structured);
   line.flag("--close", "Curves: join ends that nearly meet, as at a blunt trailing edge", request.close);
   line.option(
       "--flatten", "TOL",
@@ -202,7 +169,7 @@ void declare_part_distances(CommandLine& line, Request& request) {
       "face counts",
       [&request](const std::string& text) {
         request.distance_of_texts.push_back(text);
-        request.distances_of.push_back(parse_distance_of_part(text, request));
+        request.distances_of.push_back(parse_distance_of_part("--distance-of", text, request));
       });
   line.option(
       "--blend", "L",
@@ -212,7 +179,8 @@ void declare_part_distances(CommandLine& line, Request& request) {
 }
 
 void complete_part_distances(Request& request) {
-  if (request.distances.empty() && !request.distances_of.empty()) request.distances.push_back({"0", {}, {}});
+  if (request.distances.empty() && !request.distances_of.empty() && !request.layers)
+    request.distances.push_back({"0", {}, {}});
 }
 
 void declare_level_set(CommandLine& line, Request& request) {
@@ -359,7 +327,7 @@ void complete(Draft& draft) {
     request.tolerance->tolerance.share = parse_tolerance(request.tolerance->text).share;
     request.tolerance->tolerance.ridges_only = true;
   }
-  if (has("--layers") || has("--heights")) request.layers = draft.layers;
+  complete_layers(draft);
   if (draft.fills) request.fill = draft.fill;
   if (draft.no_sync) request.sync = OutputFiles::Sync::No;
   constexpr std::size_t kParts = 5, kPartsTaken = 4;  // four fifths of the free memory, as --help says
@@ -375,7 +343,7 @@ void complete(Draft& draft) {
 
 std::vector<std::vector<std::string>> alternative_options() {
   return {{"distance", "distance-from", "distance-xy", "distance-z", "fit"},
-          {"first-height", "total-thickness", "heights"},
+          {"first-height", "y-plus", "total-thickness", "last-height", "heights"},
           {"layers", "heights"},
           {"growth", "heights"}};
 }
@@ -387,7 +355,8 @@ void declare_offset_options(CommandLine& line, Draft& draft) {
   declare_level_set(line, draft.request);
   declare_cad(line, draft.request);
   declare_cad_output(line, draft.request);
-  declare_products(line, draft);
+  declare_products(line, draft.request);
+  declare_layers(line, draft);
   declare_fill(line, draft);
   declare_case(line, draft);
   declare_method(line, draft);
@@ -414,6 +383,7 @@ std::optional<Request> parse_command_line(int argc, const char* const* argv) {
   draft.request.command = as_typed(argc, argv);
   draft.request.config = line.config();
   explaining_presets(line.of_preset(), [&] {
+    settle_given_layers(draft);
     require_together(draft.request.given);
     complete(draft);
     require_sound(draft.request);

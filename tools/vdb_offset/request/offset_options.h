@@ -27,6 +27,7 @@ struct Draft {
   bool no_sync = false;
   IsoRequest iso;
   LayersRequest layers;
+  bool asks_for_layers = false;
   bool fills = false;
   FillRequest fill;
   ToleranceRequest tolerance;
@@ -37,9 +38,17 @@ struct Draft {
 /// set stands in the place of all that a file or a preset has of it.
 std::vector<std::vector<std::string>> alternative_options();
 
+/// Declares the options of layers (layer_options.cpp).
+void declare_layers(CommandLine& line, Draft& draft);
+/// Settles whether layers are asked for, by what is given, before rules are applied to that. \throw UsageError unless
+/// what is given of layers says the rest
+void settle_given_layers(Draft& draft);
+/// Makes layers part of the request if they are asked for.
+void complete_layers(Draft& draft);
+
 /// Declares the options that say how the rest of the domain is filled (fill_options.cpp).
 void declare_fill(CommandLine& line, Draft& draft);
-/// Declares those of patches and of cases for solvers.
+/// Declares those of patches, flows and cases for solvers (case_options.cpp).
 void declare_case(CommandLine& line, Draft& draft);
 
 /// Declares all options of an offset. \pre the draft lives as long as the command line

@@ -84,20 +84,19 @@ DistanceRequest parse_distance_from(const std::string& text, const Request& requ
   return parse_distance_of("--distance-from", names_property(text) ? text : "@" + text, request);
 }
 
-PartDistance parse_distance_of_part(const std::string& text, const Request& request) {
-  constexpr const char* kOption = "--distance-of";
+PartDistance parse_distance_of_part(const char* option, const std::string& text, const Request& request) {
   // Names may have colons, and so may expressions: of all colons, the first behind which there is a distance.
   std::optional<UsageError> first_error;
   for (std::size_t at = text.find(':'); at != std::string::npos; at = text.find(':', at + 1)) try {
-      DistanceRequest distance = parse_distance_of(kOption, text.substr(at + 1), request);
-      return {parse_part(kOption, text.substr(0, at)), std::move(distance)};
+      DistanceRequest distance = parse_distance_of(option, text.substr(at + 1), request);
+      return {parse_part(option, text.substr(0, at)), std::move(distance)};
     } catch (const UsageError& error) {
       if (!first_error) first_error = error;
     } catch (const Error& error) {
-      if (!first_error) first_error = UsageError(fmt::format("{}: {}", kOption, error.what()));
+      if (!first_error) first_error = UsageError(fmt::format("{}: {}", option, error.what()));
     }
   if (first_error) throw *first_error;
-  throw UsageError(fmt::format("{}: expected a part and its distance, as in face=3:0.4, got '{}'", kOption, text));
+  throw UsageError(fmt::format("{}: expected a part and its distance, as in face=3:0.4, got '{}'", option, text));
 }
 
 DistanceRequest parse_inner(const std::string& text, const Request& request) {

@@ -56,8 +56,8 @@ DistanceRequest parse_distance_request(const std::string& text);
 DistanceRequest parse_distance_of(const char* option, const std::string& text, const Request& request);
 /// The file, ply:NAME or vtk:NAME that --distance-from was given.
 DistanceRequest parse_distance_from(const std::string& text, const Request& request);
-/// PART:D of --distance-of.
-PartDistance parse_distance_of_part(const std::string& text, const Request& request);
+/// PART:D of an option, --distance-of or --layers-of.
+PartDistance parse_distance_of_part(const char* option, const std::string& text, const Request& request);
 /// The distance of an inner skin, above 0 if it is one for all vertices.
 DistanceRequest parse_inner(const std::string& text, const Request& request);
 

@@ -53,15 +53,24 @@ struct AxisDistances {
   GivenDistance xy, z;
 };
 
-/// Layers of cells that are asked for: their count and growth with the first height or the thickness of all, or a file
-/// of heights.
+/// A length of layers that is asked for, and the option that it was given with.
+struct LayerLength {
+  const char* option;
+  const DistanceRequest* asked;
+};
+
+/// Layers of cells that are asked for: what is known of a LayerPlan, or a file of heights.
 struct LayersRequest {
-  std::size_t count = 0;                        ///< 0: as many as the file of heights has.
-  double growth = 1.2;                          ///< Each layer's height by that of the one below.
-  std::optional<DistanceRequest> first, total;  ///< One of them, unless there is a file.
-  std::string heights;                          ///< A file with those of all layers, from the wall on.
-  std::optional<double> fan_angle;              ///< Degrees; 0: no fans.
-  bool structured = false;                      ///< The mesh is a grid of quads, and so are the layers.
+  std::size_t count = 0;         ///< 0: as follows from the others, or as many as the file of heights has.
+  std::optional<double> growth;  ///< Each layer's height by that of the one below; none: it follows from the others.
+  std::optional<DistanceRequest> first, total, last;  ///< One or two of them, unless there is a file.
+  std::optional<double> y_plus;                       ///< In place of the first height; below 0 inward.
+  std::string heights;                                ///< A file with those of all layers, from the wall on.
+  std::optional<double> fan_angle;                    ///< Degrees; 0: no fans.
+  bool structured = false;                            ///< The mesh is a grid of quads, and so are the layers.
+
+  /// Those lengths that are given as such, in the order in which they are declared.
+  std::vector<LayerLength> lengths() const;
 };
 
 /// Tetrahedra in the rest of the domain that layers begin.
@@ -84,11 +93,16 @@ struct PatchRequest {
   std::optional<BoundaryPatch::Kind> kind;
 };
 
+/// The flow that layers or a case are for.
+struct FlowRequest {
+  io::Flow given;  ///< Its speed and direction.
+  /// The viscosity is kinematic, with a density dynamic; or else it follows from the Reynolds number.
+  std::optional<double> viscosity, density, reynolds, length;
+};
+
 /// A case for a solver beside the mesh of cells.
 struct CaseRequest {
   std::string folder;  ///< Empty: none is asked for.
-  io::Flow flow;       ///< Its viscosity may follow from the next.
-  std::optional<double> viscosity, reynolds, length;
 };
 
 /// The iso-surface at the distance, asked for with --mode iso.
@@ -124,6 +138,7 @@ struct Request {
   std::optional<LayersRequest> layers;
   std::optional<FillRequest> fill;
   std::vector<PatchRequest> patches;
+  FlowRequest flow;
   CaseRequest solver_case;
   std::optional<IsoRequest> iso;
   std::optional<ToleranceRequest> tolerance;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kLeastCause = 0.25;
 // Miters whose planes go too far by no more than this share do not count as a cause. The error up to which area counts
 // as being at the distance.
-constexpr double kAtDistance = 0.01;
+constexpr double kFaceAtDistance = 0.01;
 
 // Share of the area with room from which on so little is left that it is not worth a warning. That which --preset part
 // asks for.
@@ -59,7 +59,7 @@ std::string corners_in_words(const Job& job, const OffsetStatistics& statistics)
   const std::size_t round = miters.unproven + miters.taken_back;
   if (round > 0) which.emplace_back("without room for a miter");
   if (miters.cut > 0) which.emplace_back("whose miters are cut");
-  if (miters.excess > kAtDistance) which.emplace_back("where more planes meet than one point can be on");
+  if (miters.excess > kFaceAtDistance) which.emplace_back("where more planes meet than one point can be on");
   if (any_branches) which.emplace_back(branches);
   return fmt::format("is at sharp corners {}{}",
                      which.empty() ? "without a miter" : fmt::to_string(fmt::join(which, ", or ")),
@@ -72,7 +72,7 @@ std::string corners_in_words(const Job& job, const OffsetStatistics& statistics)
 /// How much is too far away at corners of many planes, and what helps.
 void add_beyond(const Job& job, const OffsetStatistics& statistics, Remarks& remarks) {
   const FaceError& faces = statistics.faces;
-  if (faces.beyond < kAtDistance) return;
+  if (faces.beyond < kFaceAtDistance) return;
   remarks.add(Gravity::Off,
               fmt::format("{:.1f} % of the area is too far away, by up to {:.0f} %, at corners where more planes meet "
                           "than one vertex can be on{}",
@@ -145,7 +145,7 @@ std::string layers_faces_in_words(const FaceError& outermost, const FaceError& f
 }
 
 void add_iso_cause(const FaceError& faces, Remarks& remarks) {
-  if (faces.mean > kAtDistance)
+  if (faces.mean > kFaceAtDistance)
     remarks.add(Gravity::Off, "the faces' error comes from the size of voxels. Use a smaller --voxel-size");
 }
 

@@ -93,14 +93,16 @@ std::string turned_round(const std::string& text, const Lengths& lengths) {
 /// The option that asks for the same offset to the other side.
 std::string option_for_other_side(const Job& job) {
   const std::optional<LayersRequest>& layers = job.request.layers;
-  const DistanceRequest* const asked = !layers         ? &job.asked.front()
-                                       : layers->first ? &*layers->first
-                                       : layers->total ? &*layers->total
-                                                       : nullptr;
-  if (!asked) return "use heights below 0";
-  if (!asked->from.empty()) return "use distances of the other sign";
-  const char* const option = !layers ? "--distance" : layers->first ? "--first-height" : "--total-thickness";
-  return fmt::format("{} {}", option, turned_round(asked->text, job.request.lengths));
+  if (layers && !layers->heights.empty()) return "use heights below 0";
+  const std::vector<LayerLength> given =
+      layers ? layers->lengths() : std::vector<LayerLength>{{"--distance", &job.asked.front()}};
+  std::vector<std::string> options;
+  if (layers && layers->y_plus) options.push_back(fmt::format("--y-plus={:g}", -*layers->y_plus));
+  for (const auto& [option, asked] : given) {
+    if (!asked->from.empty()) return "use distances of the other sign";
+    options.push_back(fmt::format("{} {}", option, turned_round(asked->text, job.request.lengths)));
+  }
+  return fmt::format("{}", fmt::join(options, " "));
 }
 
 void add_made_straight(const Source& source, const Lengths& lengths, Remarks& remarks) {

@@ -188,6 +188,20 @@ std::string asked_in_words(const Distances& distances, const AchievedSummary& ac
   return least == most ? least : fmt::format("its distance ({} to {})", least, most);
 }
 
+std::string in_words(const LayerGrowth& growth) {
+  const std::string from = fmt::format("{:.3g}", growth.least), to = fmt::format("{:.3g}", growth.largest);
+  return from == to ? from : from + " to " + to;
+}
+
+/// What layers are planned to be.
+void print_layers(std::FILE* out, const Job& job) {
+  const Distances& first = job.distances.front();
+  fmt::print(out, "layers     {}, the first {}{} high", job.distances.size(), first.uniform() ? "" : "up to ",
+             job.request.lengths(first.farthest(), 4));
+  if (job.distances.size() > 1) fmt::print(out, ", growth {}", in_words(growth_of(job.distances)));
+  fmt::print(out, "\n");
+}
+
 }  // namespace
 
 bool output_is_taken(const Job& job) {
@@ -234,6 +248,7 @@ void add_shell(const ShellFacts& shell, Remarks& remarks) {
 void print_dry_run(const Job& job, const OffsetStatistics& statistics, const Distances& farthest) {
   const Printout out;
   print_facts(out, statistics.facts, job.request.lengths, job.curves());
+  if (job.request.layers) print_layers(out, job);
   print_plan(out, statistics, farthest, job.request.lengths);
   Remarks remarks;
   if (!job.curves()) add_orientation(job, statistics.facts, remarks);
@@ -309,8 +324,15 @@ void add_fill(const FillReport& fill, Summary& made) {
     made.remarks.add(
         Gravity::Off,
         fmt::format("from the last layer to the cells on it, volumes change {:.3g} times on average, and {:.3g} "
-                    "times at 5 % of the faces. Use more layers, which grow until they are as high as wide",
+                    "times at 5 % of the faces. Use --last-height edge, and leave out --layers or --growth",
                     fill.jump.median, fill.jump.quantile_95));
+}
+
+/// How layers grow, where that follows from lengths.
+std::string growth_in_words(const Job& job, const LayerReport& report) {
+  const LayersRequest& layers = *job.request.layers;
+  if (layers.lengths().size() + (layers.y_plus ? 1 : 0) < 2) return "";
+  return fmt::format(" (growth {})", in_words(report.growth));
 }
 
 }  // namespace
@@ -321,10 +343,10 @@ Summary summary_of(const Job& job, const LayersResult& result, const LayerReport
   const Lengths& lengths = job.request.lengths;
   Summary made;
   made.verdict = fmt::format(
-      "{}: {} layers full on {} % of the {}, {} of {} thick on average; {} cells{}; scaled Jacobian: "
+      "{}: {} layers{} full on {} % of the {}, {} of {} thick on average; {} cells{}; scaled Jacobian: "
       "least {:.3g}, median {:.3g}",
-      job.request.output, report.layers, area_percent(all.coverage, 1), report.plane ? "length" : "area",
-      lengths(all.reached.mean, 4), lengths(all.asked.mean, 4), all.cells,
+      job.request.output, report.layers, growth_in_words(job, report), area_percent(all.coverage, 1),
+      report.plane ? "length" : "area", lengths(all.reached.mean, 4), lengths(all.asked.mean, 4), all.cells,
       all.fan_cells > 0 ? fmt::format(", {} of them in fans over sharp edges", all.fan_cells) : "",
       all.scaled_jacobian.least, all.scaled_jacobian.median);
   Remarks& remarks = made.remarks;

@@ -19,7 +19,7 @@
 namespace vdb_offset {
 namespace {
 
-constexpr std::array<const char*, 8> kVariableNames = {"x", "y", "z", "nx", "ny", "nz", "u", "v"};
+constexpr std::array<const char*, 9> kVariableNames = {"x", "y", "z", "nx", "ny", "nz", "u", "v", "edge"};
 constexpr std::array<std::pair<const char*, double>, 2> kConstants = {
     {{"pi", std::numbers::pi}, {"e", std::numbers::e}}};
 
@@ -310,9 +310,10 @@ bool DistanceExpression::uses(std::string_view name) const {
 }
 
 std::vector<double> DistanceExpression::operator()(const VertexVariables& at) const {
-  const bool normals = uses_normals(), texture = uses_texture();
+  const bool normals = uses_normals(), texture = uses_texture(), edges = uses_edges();
   if (normals) require_for_each(text_, at, "normals", at.normals.size());
   if (texture) require_for_each(text_, at, "texture coordinates", at.texture.size());
+  if (edges) require_for_each(text_, at, "lengths of edges", at.edges.size());
   const std::size_t count = at.positions.size();
   std::vector<double> distance(count);
   std::atomic<std::uint64_t> first_unusable = count;
@@ -323,6 +324,7 @@ std::vector<double> DistanceExpression::operator()(const VertexVariables& at) co
       for (std::size_t k = 0; k < 3; ++k) value[k] = at.positions[v][static_cast<int>(k)];
       for (std::size_t k = 0; normals && k < 3; ++k) value[3 + k] = at.normals[v][static_cast<int>(k)];
       for (std::size_t k = 0; texture && k < 2; ++k) value[6 + k] = at.texture[v][static_cast<int>(k)];
+      if (edges) value[8] = at.edges[v];
       distance[v] = percent_ ? evaluator() / 100 * at.diagonal : evaluator();
       if (!std::isfinite(distance[v])) lower_to(first_unusable, v);
     }
@@ -334,19 +336,20 @@ std::vector<double> DistanceExpression::operator()(const VertexVariables& at) co
   return distance;
 }
 
-std::function<double(const Vec3d&, const Vec3d&, const Vec2d&)> DistanceExpression::at_points(double diagonal) const {
-  return [evaluator = std::make_shared<Evaluator>(code_), text = text_, is_share = percent_, diagonal](
-             const Vec3d& position, const Vec3d& normal, const Vec2d& texture) {
+std::function<double(const PointVariables&)> DistanceExpression::at_points(double diagonal) const {
+  return [evaluator = std::make_shared<Evaluator>(code_), text = text_, is_share = percent_,
+          diagonal](const PointVariables& at) {
     auto& value = evaluator->value;
     for (std::size_t k = 0; k < 3; ++k) {
-      value[k] = position[static_cast<int>(k)];
-      value[3 + k] = normal[static_cast<int>(k)];
-      if (k < 2) value[6 + k] = texture[static_cast<int>(k)];
+      value[k] = at.position[static_cast<int>(k)];
+      value[3 + k] = at.normal[static_cast<int>(k)];
+      if (k < 2) value[6 + k] = at.texture[static_cast<int>(k)];
     }
+    value[8] = at.edge;
     const double distance = is_share ? (*evaluator)() / 100 * diagonal : (*evaluator)();
     if (!std::isfinite(distance))
       throw InvalidInput(fmt::format("distance '{}': expected a finite number at u = {:g}, v = {:g}, got {}", text,
-                                     texture[0], texture[1], distance));
+                                     at.texture[0], at.texture[1], distance));
     return distance;
   };
 }

@@ -36,9 +36,7 @@ GivenDistance parse_distance_or_expression(const std::string& text) {
   }
 }
 
-Distances distances_of(const GivenDistance& distance, PolygonView mesh,
-                       const std::function<std::vector<Vec3d>()>& normals_of,
-                       const std::function<std::vector<Vec2d>()>& texture_of) {
+Distances distances_of(const GivenDistance& distance, PolygonView mesh, const VariableSources& sources) {
   if (!distance.expression) {
     const double diagonal = distance.percent ? used_diagonal(mesh) : 0, length = distance.in_world_units(diagonal);
     if (length == 0 && distance.value != 0 && diagonal > 0)
@@ -51,9 +49,12 @@ Distances distances_of(const GivenDistance& distance, PolygonView mesh,
   const DistanceExpression& expression = *distance.expression;
   std::vector<Vec3d> normals;
   std::vector<Vec2d> texture;
-  if (expression.uses_normals()) normals = normals_of();
-  if (expression.uses_texture()) texture = texture_of();
-  return Distances(expression({mesh.positions, normals, texture, expression.is_percent() ? used_diagonal(mesh) : 0}));
+  std::vector<double> edges;
+  if (expression.uses_normals()) normals = sources.normals();
+  if (expression.uses_texture()) texture = sources.texture();
+  if (expression.uses_edges()) edges = sources.edges();
+  return Distances(
+      expression({mesh.positions, normals, texture, expression.is_percent() ? used_diagonal(mesh) : 0, edges}));
 }
 
 double GivenDistance::in_world_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }

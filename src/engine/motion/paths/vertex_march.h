@@ -205,13 +205,11 @@ class VertexMarch {
     for (const StopDistance& stop : stops) report_at(end, stop, report);
   }
 
-  /// What a step has come to.
   struct Step {
     double length;
-    bool blocked;  ///< It ends at an obstacle.
+    bool blocked;  // it ends at an obstacle
     Sample end;
   };
-
   /// A step along the direction field, of the length or, where the path bends, less.
   Step step_from(const Sample& here, double length) {
     const Vec3d ahead = runge_kutta(here, length), to = guard_ ? guard_->stop(here.x, ahead) : ahead;
@@ -289,8 +287,7 @@ class VertexMarch {
     return sample_at(x, hint_, nearest);
   }
   double first_step() const { return 0.1 * std::min(target_, h_); }
-  /// Whether the face that is closest to a point turns its other side to it: after a step longer than the distance, the
-  /// path has crossed it.
+  /// Whether the closest face turns its other side to a point: a step longer than the distance has crossed it.
   bool is_behind(const Sample& at) const {
     return surface_.facts.oriented() && side_ * surface_.pseudonormal(at.triangle, at.feature).dot(at.away) < 0;
   }
@@ -346,11 +343,6 @@ class VertexMarch {
     return leave_surface(std::max(kShortStep * target_, kClear * tolerance));
   }
 
-  static double smooth_step(double x, double from, double to) {
-    const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
-    return s * s * (3 - 2 * s);
-  }
-
   /// Unit velocity at x, a point whose distance to the surface is about phi: the smooth gradient, or `fallback`
   /// where there is none or where it vanishes. Just off the surface, a gradient that does not agree with the
   /// vertex normal has leaked through a wall thinner than its stencil, and gives way to that normal.
@@ -363,7 +355,8 @@ class VertexMarch {
     gradient *= side_;
     const double away = phi / (kLeakVoxels * h_);
     if (away < 1) {
-      const double agreement = smooth_step(gradient.dot(normal_), kLeaked, kTrusted);
+      const double trust = std::clamp((gradient.dot(normal_) - kLeaked) / (kTrusted - kLeaked), 0.0, 1.0),
+                   agreement = trust * trust * (3 - 2 * trust);
       gradient += normal_ * ((1 - agreement) * (1 - std::max(away, 0.0)));
     }
     return gradient.lengthSqr() > kLeastGradient * kLeastGradient ? gradient.unit() : fallback;

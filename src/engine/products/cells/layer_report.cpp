@@ -319,6 +319,7 @@ LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const Wa
   report.plane = quality.plane;
   report.least_segment = quality.least_segment;
   report.points = quality.points;
+  report.growth = growth_of(layers.heights);
   report.growing = layers.layer_statistics;
   report.turned_faces = facts.turned_faces;
   report.border_sides = facts.border_sides;

@@ -242,6 +242,7 @@ Json layers_json(const LayerReport& layers) {
   for (const LayerFigures& patch : layers.patches) patches.push_back(figures_json(patch));
   report.erase("name");
   report["count"] = layers.layers;
+  report["growth"] = {{"least", layers.growth.least}, {"largest", layers.growth.largest}};
   report["volume"] = layers.volume;
   if (layers.plane) report["least_segment"] = layers.least_segment;
   report["points"] = layers.points;

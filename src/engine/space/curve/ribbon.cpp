@@ -337,6 +337,23 @@ std::vector<Vec3d> curve_normals(CurvesView curves) {
   return normals;
 }
 
+std::vector<double> curve_edges(CurvesView curves) {
+  const PlaneFrame frame = plane_of(curves);
+  std::vector<Vec2d> points;
+  for (const Vec3d& p : curves.positions) points.push_back(frame.to_plane(p));
+  const CurveChains chains = join_curves(curves, points);
+  std::vector<double> sum(points.size(), 0.0), mean(points.size(), 0.0);
+  std::vector<std::uint32_t> count(points.size(), 0);
+  for (const auto& [a, b] : chains.segments)
+    for (const auto p : {a, b}) {
+      sum[p] += (points[b] - points[a]).length();
+      ++count[p];
+    }
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (const std::uint32_t own = chains.welded_to[p]; own != kNone && count[own] > 0) mean[p] = sum[own] / count[own];
+  return mean;
+}
+
 Polygons make_ribbon(std::span<const Segment> segments, std::span<const Vec2d> points, double height) {
   Polygons ribbon;
   ribbon.positions.reserve(2 * points.size());

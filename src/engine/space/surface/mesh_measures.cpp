@@ -46,4 +46,25 @@ std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld,
   return normals;
 }
 
+std::vector<double> mean_edges(PolygonView polygons, const WeldOptions& weld) {
+  const Surface surface = build_surface(polygons, weld);
+  std::vector<double> sum(surface.vertices.size(), 0.0), mean(polygons.positions.size(), 0.0);
+  std::vector<std::uint32_t> count(surface.vertices.size(), 0);
+  for (std::size_t f = 0; f < polygons.face_count(); ++f) {
+    const auto face = polygons.face(f);
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::uint32_t a = face[k], b = face[(k + 1) % face.size()];
+      const double length = (polygons.positions[a] - polygons.positions[b]).length();
+      for (const std::uint32_t v : {surface.welded[a], surface.welded[b]}) {
+        if (v == kNone) continue;
+        sum[v] += length;
+        ++count[v];
+      }
+    }
+  }
+  for (std::size_t v = 0; v < mean.size(); ++v)
+    if (const std::uint32_t w = surface.welded[v]; w != kNone && count[w] > 0) mean[v] = sum[w] / count[w];
+  return mean;
+}
+
 }  // namespace vdb_offset
