@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "command/shell_command.h"
+#include "vdb_offset/io/case_file.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;
@@ -49,6 +51,44 @@ TEST_CASE("--fill fills what layers leave, and --case writes what a solver needs
   CHECK(text_of(shell.file("case/0/U")) == "mine");
 }
 
+TEST_CASE("--case writes the options of SU2, with a marker for each patch", "[command]") {
+  ShellCommand shell;
+  std::ofstream(shell.file("rows.dat")) << "0 0\n1 0\n1 1\n0 1\n0 0\n";
+  std::filesystem::create_directory(shell.file("case"));
+  const Run made = shell(
+      "rows.dat case/rows.su2 --layers 3 --first-height 0.02 --fill --farfield box:3L --case su2:case "
+      "--viscosity 0.3 --density 1.5 --speed 2 --direction 0,3,0 --length 0.5 --patch wall=plate --patch "
+      "farfield=far:farfield");
+  INFO(made.err);
+  CHECK(made.code == 0);
+  const std::string options = text_of(shell.file("case/flow.cfg"));
+  for (const char* const line :
+       {"MARKER_HEATFLUX= ( plate, 0.0 )\n", "MARKER_FAR= ( far )\n", "MU_CONSTANT= 0.2\n", "REF_AREA= 0.5\n",
+        "INC_VELOCITY_INIT= ( 0, 2, 0 )\n", "MESH_FILENAME= rows.su2\n", "MARKER_MONITORING= ( plate )\n"})
+    CHECK_THAT(options, Catch::Contains(line));
+  CHECK_THAT(options, !Catch::Contains("INLET"));
+  CHECK_THAT(text_of(shell.file("case/README")), Catch::Contains("SU2_CFD flow.cfg"));
+  // Each marker is one of the mesh.
+  const std::string mesh = text_of(shell.file("case/rows.su2"));
+  for (const char* const name : {"plate", "far"})
+    CHECK_THAT(mesh, Catch::Contains(std::string("MARKER_TAG= ") + name + "\n"));
+  // What is there stays.
+  io::write_su2_case(
+      shell.file("case/pipe.su2"),
+      std::vector<io::CasePatch>{{"in", BoundaryPatch::Kind::Inlet}, {"out", BoundaryPatch::Kind::Outlet}},
+      {.speed = 3, .viscosity = 1});
+  CHECK(text_of(shell.file("case/flow.cfg")) == options);
+  std::filesystem::remove(shell.file("case/flow.cfg"));
+  io::write_su2_case(
+      shell.file("case/pipe.su2"),
+      std::vector<io::CasePatch>{{"in", BoundaryPatch::Kind::Inlet}, {"out", BoundaryPatch::Kind::Outlet}},
+      {.speed = 3, .viscosity = 1});
+  CHECK_THAT(
+      text_of(shell.file("case/flow.cfg")),
+      Catch::Contains("INC_INLET_TYPE= ( VELOCITY_INLET )\nMARKER_INLET= ( in, 288.15, 3, 1.0, 0.0, 0.0 )\n"
+                      "INLET_USE_NORMAL= YES\nINC_OUTLET_TYPE= ( PRESSURE_OUTLET )\nMARKER_OUTLET= ( out, 0.0 )"));
+}
+
 TEST_CASE("--fill says in one line what it cannot do", "[command]") {
   ShellCommand shell;
   std::ofstream(shell.file("square.dat")) << kSquare;
@@ -69,6 +109,8 @@ TEST_CASE("--fill says in one line what it cannot do", "[command]") {
         Wrong{"square.dat none.vtu --fill --patch inlet=a LAYERS", 1, "expected one of wall, farfield"},
         Wrong{"square.dat none.vtu --fill --case openfoam:c --reynolds 1 LAYERS", 1, "c/constant/polyMesh"},
         Wrong{"square.dat c/constant/polyMesh --fill --case openfoam:c LAYERS", 1, "--viscosity"},
+        Wrong{"square.dat none.vtu --fill --case fluent:c --reynolds 1 LAYERS", 1, "'openfoam:FOLDER' or 'su2:FOLDER'"},
+        Wrong{"square.dat d/x.su2 --fill --case su2:c --reynolds 1 LAYERS", 1, "a .su2 file in c"},
         Wrong{"line.dat none.vtu --fill LAYERS", 2, "closed curves"}}) {
     std::string command = line;
     if (const auto at = command.find("LAYERS"); at != std::string::npos) command.replace(at, 6, layers);

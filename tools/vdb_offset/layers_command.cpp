@@ -188,7 +188,8 @@ void write_case(const Job& job, const VolumeMesh& mesh) {
   std::vector<io::CasePatch> patches;
   for (const BoundaryPatch& patch : mesh.patches)
     if (patch.face_count() > 0) patches.push_back({patch.name, patch.kind});
-  io::write_openfoam_case(request.folder, patches, flow);
+  if (request.of_su2) io::write_su2_case(job.request.output, patches, flow);
+  else io::write_openfoam_case(request.folder, patches, flow);
 }
 
 void write_volume(const Job& job, Grown& grown) {

@@ -35,4 +35,10 @@ struct CasePatch {
 VDB_OFFSET_API std::vector<std::string> write_openfoam_case(const std::string& folder,
                                                             std::span<const CasePatch> patches, const Flow& flow);
 
+/// Writes a case for SU2's solver of incompressible flows, steady and laminar, beside a .su2 file: flow.cfg, with
+/// markers by the patches' kinds, and a README. Plane meshes have a thickness above 0, which does not count. Files that
+/// are there stay as they are. Returns the names of those that are written. \throw as write_openfoam_case()
+VDB_OFFSET_API std::vector<std::string> write_su2_case(const std::string& mesh, std::span<const CasePatch> patches,
+                                                       const Flow& flow);
+
 }  // namespace vdb_offset::io

@@ -5,11 +5,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 
-#include "vdb_offset/io/case_file.h"
-#include "vdb_offset/output_files.h"
-#include "vdb_offset/run.h"
+#include "flow/case_texts.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -27,10 +24,8 @@ std::string vector_text(const Vec3d& x) { return fmt::format("({:.10g} {:.10g} {
 
 class OpenFoamCase {
  public:
-  OpenFoamCase(std::span<const CasePatch> patches, const Flow& flow) : patches_(patches), flow_(flow) {
-    direction_ = flow.direction;
-    if (!direction_.normalize()) throw InvalidInput("case: expected a direction of the flow, got none");
-  }
+  OpenFoamCase(std::span<const CasePatch> patches, const Flow& flow)
+      : patches_(patches), flow_(flow), direction_(direction_of(flow)) {}
 
   std::string velocity() const {
     const std::string far = vector_text(direction_ * flow_.speed);
@@ -121,14 +116,11 @@ class OpenFoamCase {
   }
 
   std::string readme() const {
-    std::string text = fmt::format(
-        "A steady, laminar flow at speed {:.6g} with kinematic viscosity {:.6g}; lengths are the mesh's.\n\n"
-        "    checkMesh -case .\n    potentialFoam -case .\n    simpleFoam -case .\n\n"
-        "postProcessing/forces has drag and lift, by length {:.6g}{}. In 0/, conditions are:\n\n",
-        flow_.speed, flow_.viscosity, flow_.length,
-        flow_.thickness > 0 ? fmt::format(" and thickness {:.6g}", flow_.thickness) : " and its square");
-    for (const CasePatch& patch : patches_) text += fmt::format("    {}: {}\n", patch.name, in_words(patch.kind));
-    return text;
+    return flow_in_words(flow_) + "\n    checkMesh -case .\n    potentialFoam -case .\n    simpleFoam -case .\n\n" +
+           fmt::format(
+               "postProcessing/forces has drag and lift, by length {:.6g}{}. In 0/, conditions are:\n\n", flow_.length,
+               flow_.thickness > 0 ? fmt::format(" and thickness {:.6g}", flow_.thickness) : " and its square") +
+           conditions_in_words(patches_);
   }
 
  private:
@@ -136,23 +128,6 @@ class OpenFoamCase {
     for (const CasePatch& patch : patches_)
       if (patch.kind == kind) return true;
     return false;
-  }
-
-  static const char* in_words(Kind kind) {
-    switch (kind) {
-      case Kind::Wall:
-        return "a wall without slip";
-      case Kind::Inlet:
-        return "an inlet with the flow's speed across it";
-      case Kind::Outlet:
-        return "an outlet at pressure 0";
-      case Kind::Symmetry:
-        return "a plane of symmetry";
-      case Kind::Empty:
-        return "the two ends of a plane flow";
-      default:
-        return "far away";
-    }
   }
 
   /// The conditions of a field, of which `condition` gives those that are not the same for all fields.
@@ -177,34 +152,17 @@ class OpenFoamCase {
 
 std::vector<std::string> write_openfoam_case(const std::string& folder, std::span<const CasePatch> patches,
                                              const Flow& flow) {
-  if (!(flow.viscosity > 0) || !(flow.speed > 0) || !(flow.length > 0))
-    throw InvalidInput("case: expected a speed, a length and a viscosity above 0");
-  for (const CasePatch& patch : patches)
-    if (patch.kind == Kind::Side)
-      throw InvalidInput(
-          fmt::format("case: expected to know what {0} is (--patch {0}=inlet:inlet, or outlet, wall, "
-                      "symmetry, farfield)",
-                      patch.name));
+  require_flow(patches, flow);
   const OpenFoamCase texts(patches, flow);
-  const std::pair<const char*, std::string> files[] = {{"0/U", texts.velocity()},
-                                                       {"0/p", texts.pressure()},
-                                                       {"constant/transportProperties", texts.transport()},
-                                                       {"constant/turbulenceProperties", texts.turbulence()},
-                                                       {"system/controlDict", texts.control()},
-                                                       {"system/fvSchemes", texts.schemes()},
-                                                       {"system/fvSolution", texts.solution()},
-                                                       {"README", texts.readme()}};
-  std::vector<std::string> written;
-  OutputFiles outputs;
-  for (const auto& [name, text] : files) {
-    const std::filesystem::path path = std::filesystem::path(folder) / name;
-    if (std::filesystem::exists(path)) continue;
-    outputs.add_folders(path.parent_path());
-    write_file(path.string(), text);
-    written.push_back(path.string());
-  }
-  outputs.commit();
-  return written;
+  const CaseText files[] = {{"0/U", texts.velocity()},
+                            {"0/p", texts.pressure()},
+                            {"constant/transportProperties", texts.transport()},
+                            {"constant/turbulenceProperties", texts.turbulence()},
+                            {"system/controlDict", texts.control()},
+                            {"system/fvSchemes", texts.schemes()},
+                            {"system/fvSolution", texts.solution()},
+                            {"README", texts.readme()}};
+  return write_where_missing(folder, files);
 }
 
 }  // namespace vdb_offset::io

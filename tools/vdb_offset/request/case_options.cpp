@@ -67,13 +67,15 @@ void declare_case(CommandLine& line, Draft& draft) {
                 [&request](const std::string& text) { request.patches.push_back(parse_patch(text)); });
   line.option(
       "--case", "KIND:FOLDER",
-      "With --fill, and OUTPUT FOLDER/constant/polyMesh: 'openfoam:FOLDER' writes what else simpleFoam needs for a "
-      "steady laminar flow; files that are there stay",
+      "With --fill: what else a solver needs for a steady laminar flow: 'openfoam:FOLDER' for simpleFoam, with OUTPUT "
+      "FOLDER/constant/polyMesh, or 'su2:FOLDER', with OUTPUT a .su2 file in FOLDER; files that are there stay",
       [&made](const std::string& text) {
-        constexpr std::string_view kOpenFoam = "openfoam:";
-        require(text.starts_with(kOpenFoam) && text.size() > kOpenFoam.size(),
-                fmt::format("--case: expected 'openfoam:FOLDER', got '{}'", text));
-        made.folder = text.substr(kOpenFoam.size());
+        constexpr std::string_view kOpenFoam = "openfoam:", kSu2 = "su2:";
+        made.of_su2 = text.starts_with(kSu2);
+        const std::size_t begin = made.of_su2 ? kSu2.size() : kOpenFoam.size();
+        require((made.of_su2 || text.starts_with(kOpenFoam)) && text.size() > begin,
+                fmt::format("--case: expected 'openfoam:FOLDER' or 'su2:FOLDER', got '{}'", text));
+        made.folder = text.substr(begin);
       });
   const double most = std::numeric_limits<double>::max();
   const auto above_0 = [most](const char* option) { return number_between(option, "a number above 0", 0, most); };

@@ -104,6 +104,14 @@ void require_for_mesh(const Request& request) {
 void require_case(const Request& request) {
   const std::string& folder = request.solver_case.folder;
   if (folder.empty()) return;
+  if (request.solver_case.of_su2) {
+    const auto beside = std::filesystem::path(request.output).lexically_normal().parent_path(),
+               wanted = (std::filesystem::path(folder) / "").lexically_normal().parent_path();
+    require(
+        io::volume_format_of(request.output) == io::VolumeFormat::Su2 && beside == wanted,
+        fmt::format("{}: expected a .su2 file in {} as the OUTPUT of --case su2:{}", request.output, folder, folder));
+    return;
+  }
   const auto mesh = std::filesystem::path(request.output).lexically_normal(),
              expected = (std::filesystem::path(folder) / "constant" / "polyMesh").lexically_normal();
   require(mesh == expected || mesh == expected / "", fmt::format("{}: expected {} as the OUTPUT of --case openfoam:{}",

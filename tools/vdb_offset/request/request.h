@@ -102,7 +102,8 @@ struct FlowRequest {
 
 /// A case for a solver beside the mesh of cells.
 struct CaseRequest {
-  std::string folder;  ///< Empty: none is asked for.
+  std::string folder;   ///< Empty: none is asked for.
+  bool of_su2 = false;  ///< Else of OpenFOAM.
 };
 
 /// The iso-surface at the distance, asked for with --mode iso.

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flow/case_texts.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "vdb_offset/output_files.h"
+#include "vdb_offset/run.h"
+
+namespace vdb_offset::io {
+
+void require_flow(std::span<const CasePatch> patches, const Flow& flow) {
+  if (!(flow.viscosity > 0) || !(flow.speed > 0) || !(flow.length > 0))
+    throw InvalidInput("case: expected a speed, a length and a viscosity above 0");
+  for (const CasePatch& patch : patches)
+    if (patch.kind == BoundaryPatch::Kind::Side)
+      throw InvalidInput(
+          fmt::format("case: expected to know what {0} is (--patch {0}=inlet:inlet, or outlet, wall, "
+                      "symmetry, farfield)",
+                      patch.name));
+}
+
+Vec3d direction_of(const Flow& flow) {
+  Vec3d direction = flow.direction;
+  if (!direction.normalize()) throw InvalidInput("case: expected a direction of the flow, got none");
+  return direction;
+}
+
+const char* in_words(BoundaryPatch::Kind kind) {
+  switch (kind) {
+    case BoundaryPatch::Kind::Wall:
+      return "a wall without slip";
+    case BoundaryPatch::Kind::Inlet:
+      return "an inlet with the flow's speed across it";
+    case BoundaryPatch::Kind::Outlet:
+      return "an outlet at pressure 0";
+    case BoundaryPatch::Kind::Symmetry:
+      return "a plane of symmetry";
+    case BoundaryPatch::Kind::Empty:
+      return "the two ends of a plane flow";
+    default:
+      return "far away";
+  }
+}
+
+std::string flow_in_words(const Flow& flow) {
+  return fmt::format(
+      "A steady, laminar flow at speed {:.6g} with kinematic viscosity {:.6g}; lengths are the mesh's.\n", flow.speed,
+      flow.viscosity);
+}
+
+std::string conditions_in_words(std::span<const CasePatch> patches) {
+  std::string text;
+  for (const CasePatch& patch : patches) text += fmt::format("    {}: {}\n", patch.name, in_words(patch.kind));
+  return text;
+}
+
+std::vector<std::string> write_where_missing(const std::string& folder, std::span<const CaseText> files) {
+  std::vector<std::string> written;
+  OutputFiles outputs;
+  for (const auto& [name, text] : files) {
+    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    if (std::filesystem::exists(path)) continue;
+    outputs.add_folders(path.parent_path());
+    write_file(path.string(), text);
+    written.push_back(path.string());
+  }
+  outputs.commit();
+  return written;
+}
+
+}  // namespace vdb_offset::io
