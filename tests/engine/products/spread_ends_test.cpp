@@ -62,7 +62,7 @@ void require_spread(const Polygons& mesh, double total, double least_jacobian) {
 
 TEST_CASE("spread ends: over a concave edge, edges keep a fifth of the wall's", "[layers]") {
   // Three spacings, and far more.
-  const auto total = GENERATE(0.05, 0.12, 0.3, 0.5, -0.1);
+  const auto total = GENERATE(0.05, 0.12, 0.3, 0.5, -0.1, -0.12, -0.2);
   require_spread(test::l_tube(10), total, 0.5);
 }
 
