@@ -69,6 +69,7 @@ Grown grow_on_curves(CurvesView curves, std::span<const Distances> heights, cons
       report_layers(cells.segments.view(), grown.layers, {}, cells.facts, measure_curve_cells(cells, grown.layers));
   if (product == Product::Block) grown.block = make_curve_block(curves, grown.layers);
   else grown.cells = std::move(cells.mesh);
+  grown.report.boundary = patch_facts(grown.cells);
   return grown;
 }
 
@@ -120,6 +121,7 @@ Grown grow_on_mesh(PolygonView mesh, std::span<const Distances> heights, const O
     grown.report.inverted_block_cells = inverted_cells(grown.block);
   } else {
     grown.cells = std::move(cells).make(names);
+    grown.report.boundary = patch_facts(grown.cells);
   }
   return grown;
 }

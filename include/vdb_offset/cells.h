@@ -13,6 +13,7 @@
 #include "vdb_offset/api.h"
 #include "vdb_offset/layer_plan.h"
 #include "vdb_offset/layers.h"
+#include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/numbers.h"
 #include "vdb_offset/polygons.h"
 
@@ -256,7 +257,23 @@ struct FillReport {
   Spread scaled_jacobian;  ///< Of both (see cell_quality.h).
   Spread jump;             ///< Volumes of tetrahedra at the layers by those of the cells behind, 1 or more either way.
   double seconds = 0;      ///< That the filler took.
+  /// Planes that openings end at along one straight line, which lies in many planes: these are at right angles to the
+  /// faces beside it, and across no axis.
+  std::vector<SymmetryPlane> guessed_planes;
 };
+
+/// A patch of a mesh's boundary, and the plane that all of it lies in, if it does, with its normal out of the mesh.
+struct PatchFacts {
+  std::string name;
+  BoundaryPatch::Kind kind = BoundaryPatch::Kind::Wall;
+  std::size_t faces = 0;
+  std::optional<SymmetryPlane> plane;
+};
+
+/// The patches of a mesh that have faces. Walls and the farfield are in no plane.
+VDB_OFFSET_API std::vector<PatchFacts> patch_facts(const VolumeMesh& mesh);
+/// A kind's name in reports.
+VDB_OFFSET_API const char* name(BoundaryPatch::Kind kind);
 
 struct LayerReport {
   std::size_t layers = 0;
@@ -269,6 +286,7 @@ struct LayerReport {
   LayerGrowth growth;  ///< As asked for.
   LayerStatistics growing;
   std::optional<FillReport> fill;        ///< If the rest of the domain was filled.
+  std::vector<PatchFacts> boundary;      ///< Of a mesh of cells that is written.
   std::optional<FoamQuality> foam;       ///< If a mesh has been written for OpenFOAM.
   std::size_t inverted_block_cells = 0;  ///< Cells of a structured block that was written, with a Jacobian not above 0.
   std::size_t turned_faces = 0, border_sides = 0, unpaired_sides = 0, split_points = 0, coincident_sides = 0;

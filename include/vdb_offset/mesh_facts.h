@@ -126,6 +126,11 @@ VDB_OFFSET_API double used_diagonal(PolygonView mesh);
 VDB_OFFSET_API std::vector<Vec3d> vertex_normals(PolygonView polygons, const WeldOptions& weld = {},
                                                  Orient orient = Orient::Keep);
 
+/// 1 for a point on the outer side of the mesh, -1 for one on its inner side, by the face, edge or vertex that is
+/// closest to it. \throw InvalidInput as build_surface(), for a mesh without faces, and for a point on the surface
+VDB_OFFSET_API int side_of_point(PolygonView polygons, const Vec3d& point, const WeldOptions& weld = {},
+                                 Orient orient = Orient::Keep);
+
 /// Mean length of the sides of the faces around each vertex, of the welded surface; 0 for a vertex that no face uses.
 /// \throw InvalidInput as build_surface()
 VDB_OFFSET_API std::vector<double> mean_edges(PolygonView polygons, const WeldOptions& weld = {});

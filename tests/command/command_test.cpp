@@ -203,6 +203,20 @@ TEST_CASE("command: thickness by the surface's own parameters", "[command]") {
     CHECK(p[2] == Approx(0.1 + 0.2 * (p[0] / 8) * (p[0] / 8)));
 }
 
+TEST_CASE("command: a point says to which side a mesh is offset", "[command]") {
+  ShellCommand shell;
+  const auto radius = [&](const std::string& options) {
+    const Run run = shell("sphere.obj out.obj " + options);
+    INFO(run.err);
+    CHECK(run.code == 0);
+    return io::read_mesh(shell.file("out.obj")).polygons.positions[0].length();
+  };
+  CHECK(radius("-d 0.1 --side-of 0.1,0.2,0") == Approx(0.9).epsilon(0.01));
+  CHECK(radius("-d 0.1 --side-of 0,0,-3") == Approx(1.1).epsilon(0.01));
+  CHECK(shell("sphere.obj out.obj -d=-0.1 --side-of 0,0,0").code == 1);
+  CHECK(shell("sphere.obj out.obj -d 0.1 --side-of 0,0").code == 1);
+}
+
 TEST_CASE("command: several distances, one output each", "[command]") {
   const ShellCommand shell;
   CHECK(shell("sphere.obj out.obj -d 0.1 -d 0.2 -d -0.1 --report r.json").code == 0);

@@ -54,7 +54,7 @@ TEST_CASE("--layers says in one line which of its lengths do not go together", "
   refused("--layers 3", "--layers needs --first-height or");
   refused("--first-height 0.1", "--first-height needs --layers");
   refused("--layers 3 --y-plus 1", "--y-plus needs one of --viscosity, --reynolds");
-  refused("--layers 3 --y-plus 0 --reynolds 10", "--y-plus: expected a number other than 0, got '0'");
+  refused("--layers 3 --y-plus 0 --reynolds 10", "--y-plus: expected a finite number other than 0, got '0'");
   refused("--layers 3 --y-plus 1 --first-height 1 --reynolds 10", "exclude each other");
   refused("--layers 3 --first-height 0.1 --speed 3", "--speed needs --case or --y-plus");
   refused("--layers 3 --first-height 0.1 --blend 3", "--blend: expected --layers-of");
@@ -71,4 +71,14 @@ TEST_CASE("--layers-of gives a part heights of its own", "[command][layers]") {
   const auto outer = io::read_mesh(shell.file("out_002.obj")).polygons.positions;
   const double expected[] = {0.2, 0.2, 0.4, 0.2, 0.2, 0.4, 0.6, 0.6};
   for (std::size_t v = 0; v < 8; ++v) CHECK(outer[v][2] == Approx(expected[v]).epsilon(1e-4));
+}
+
+TEST_CASE("--layers opens sharp edges of CAD models into fans as well", "[command][layers][cad]") {
+  ShellCommand shell;
+  const Run made = shell(scenes_path() + "/bracket.step out.vtu --layers 2 --first-height 0.02 --report r.json");
+  INFO(made.err);
+  CHECK(made.code == 0);
+  const auto report = nlohmann::json::parse(std::ifstream(shell.file("r.json")));
+  CHECK(report["layers"]["fan_cells"] > 0);
+  CHECK(report["layers"]["coverage"] > 0.99);
 }

@@ -197,6 +197,7 @@ void write_volume(const Job& job, Grown& grown) {
                     : grown.filled ? std::move(*grown.filled)
                                    : std::move(*grown.cells).make(grown.names);
   rename_patches(job.request, mesh);
+  grown.report.boundary = patch_facts(mesh);
   if (!job.request.solver_case.folder.empty()) write_case(job, mesh);
   const io::VolumeWriteResult written = io::write_volume(job.request.output, std::move(mesh));
   grown.report.foam = written.foam;

@@ -22,6 +22,15 @@
 namespace vdb_offset::tool {
 namespace {
 
+std::string numbers(const std::optional<Vec3d>& vector) {
+  return vector ? fmt::format("{} {} {}", (*vector)[0], (*vector)[1], (*vector)[2]) : "";
+}
+
+/// The parts that have distances, or layers, of their own.
+std::string parts_of(const Request& request, bool are_layers) {
+  return request.layers.has_value() == are_layers ? fmt::format("{}", fmt::join(request.distance_of_texts, " ")) : "";
+}
+
 /// The names and values of all options that are in force.
 std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job, const Destination& to) {
   const Request& request = job.request;
@@ -39,11 +48,10 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
   const ToleranceRequest tolerance = request.tolerance.value_or(ToleranceRequest{});
   return {{"unit", request.unit},
           {"distance", to.distance},
-          {"distance-of", request.layers ? "" : fmt::format("{}", fmt::join(request.distance_of_texts, " "))},
+          {"side-of", numbers(request.side_of)},
+          {"distance-of", parts_of(request, false)},
           {"blend", request.blend_text},
-          {"metric", fmt::format("{}", fmt::join(std::vector{options.metric.scale[0], options.metric.scale[1],
-                                                             options.metric.scale[2]},
-                                                 " "))},
+          {"metric", numbers(options.metric.scale)},
           {"mode", request.iso ? "iso" : "topology"},
           {"adaptivity", iso.adaptivity ? fmt::format("{}", *iso.adaptivity) : "flat"},
           {"inside", iso.use_winding ? "winding" : "never"},
@@ -59,7 +67,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"total-thickness", text_of(layers.total)},
           {"last-height", text_of(layers.last)},
           {"y-plus", layers.y_plus ? fmt::format("{}", *layers.y_plus) : ""},
-          {"layers-of", request.layers ? fmt::format("{}", fmt::join(request.distance_of_texts, " ")) : ""},
+          {"layers-of", parts_of(request, true)},
           {"growth", layers.growth ? fmt::format("{}", *layers.growth) : ""},
           {"heights", layers.heights},
           {"fan-angle", request.layers ? fmt::format("{}", fan_angle_of(request)) : ""},

@@ -119,6 +119,16 @@ std::vector<Distances> distances_of(Job& job) {
   return distances;
 }
 
+/// Has distances go to the side that a point is on.
+void turn_to_side(Job& job) {
+  if (job.curves()) throw InvalidOption("--side-of: expected a mesh, got curves");
+  for (const Distances& each : job.distances)
+    if (each.inward() > 0)
+      throw InvalidOption("--side-of: expected distances of 0 or more, as the point says their sign");
+  if (side_of_point(job.source.view(), *job.request.side_of, job.options.weld, job.options.orient) > 0) return;
+  for (Distances& each : job.distances) each = scaled(each, -1);
+}
+
 /// The meshes that are written, but for their names.
 std::optional<io::Target> target_of(const Job& job) {
   const Request& request = job.request;
@@ -176,6 +186,7 @@ Job resolve_options(const Request& request, const Source& source) {
   settle_surroundings(job);
   if (!request.layers) job.distances = distances_of(job);
   else job.distances = heights_of_layers(job);
+  if (request.side_of) turn_to_side(job);
   job.options.bytes_held = bytes_held(job);
   return job;
 }

@@ -60,6 +60,7 @@ TEST_CASE("layer plan: without a number there are as many layers as the growth n
   CHECK(heights.back()[0] == 0.05);
   CHECK(plan_layers({.growth = 1, .first = 0.01, .total = 0.05}).size() == 5);
   CHECK(plan_layers({.growth = 1.2, .first = 0.01, .last = 0.01}).size() == 1);
+  CHECK(plan_layers({.growth = 1.2, .first = 0.01, .total = 0.01}).size() == 1);
 }
 
 TEST_CASE("layer plan: each vertex has its own lengths, and the count is that of all", "[layers][plan]") {
@@ -85,7 +86,7 @@ TEST_CASE("layer plan: what cannot be is refused, with what was expected", "[lay
   refused({.count = 3, .first = 0.2, .total = 0.1}, "a first height below the total thickness of 0.1, got 0.2");
   refused({.count = 3, .total = 0.1, .last = 0.2}, "a last height below the total thickness");
   refused({.count = 2, .first = 0.001, .last = 1}, "2 layers grow by no more than 10");
-  refused({.count = 1, .first = 0.001, .last = 1}, "as there is one layer");
+  refused({.count = 1, .first = 0.001, .last = 1}, "for one layer");
   refused({.growth = 0.9, .first = 0.01, .total = 1}, "no more than 1000");
   refused({.count = 0, .growth = 1, .first = 1}, "expected 1 to 1000, got 0");
   refused({.count = 3, .growth = 11, .first = 1}, "a growth above 0, up to 10, got 11");

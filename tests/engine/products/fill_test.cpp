@@ -10,62 +10,15 @@
 
 #include "products/volume/cell_quality.h"
 #include "products/volume/volume_faces.h"
+#include "support/fills.h"
 #include "support/grown_curves.h"
 #include "vdb_offset/offset.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;
+using namespace vdb_offset::test;
 
 namespace {
-
-/// Fills a domain that all of can be seen from its middle.
-FilledDomain fill_from_middle(const FillDomain& domain) {
-  FilledDomain filled;
-  filled.added.emplace_back(0.0);
-  const auto middle = static_cast<std::uint32_t>(domain.points.size());
-  for (const auto& [a, b, c] : domain.triangles) filled.cells.push_back({a, c, b, middle});
-  return filled;
-}
-
-/// Layers on a mesh, and what fills the rest.
-struct Filled {
-  LayersResult layers;
-  VolumeMesh mesh;
-  FillReport report;
-};
-
-Filled fill(const Polygons& wall, double thickness, const Filler& filler, FillOptions options = {},
-            const std::vector<std::uint8_t>& only = {}) {
-  Filled made;
-  OffsetOptions how;
-  how.only = only;
-  how.border = Border::Free;
-  made.layers = grow_layers(wall.view(), std::vector<Distances>{thickness / 2, thickness}, how);
-  LayerCellFacts facts;
-  VolumeMesh cells = make_cells(wall.view(), made.layers, {}, &facts);
-  made.mesh = fill_volume(wall.view(), made.layers, facts, {}, std::move(cells), options, filler, &made.report);
-  return made;
-}
-
-const BoundaryPatch* patch_of(const VolumeMesh& mesh, const std::string& name) {
-  const auto found = std::ranges::find(mesh.patches, name, &BoundaryPatch::name);
-  return found == mesh.patches.end() ? nullptr : &*found;
-}
-
-/// Requires all faces to match, and the cells to have the volume that the boundary encloses.
-void require_mesh(const VolumeMesh& mesh, double volume) {
-  CHECK_NOTHROW(VolumeFaces(mesh));
-  CHECK(enclosed_volume(mesh) == Approx(volume).epsilon(1e-12));
-  double sum = 0, least = 1;
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    sum += cell_volume(mesh, c);
-    least = std::min(least, cell_volume(mesh, c));
-  }
-  CHECK(sum == Approx(volume).epsilon(1e-9));
-  CHECK(least > 0);
-  for (const VolumeField& field : mesh.cell_fields) CHECK(field.values.size() == mesh.cell_count());
-  for (const VolumeField& field : mesh.point_fields) CHECK(field.values.size() == mesh.points.size());
-}
 
 /// A tube along x, open at both ends, seen from inside.
 Polygons tube(int segments, int stacks, double length) {
@@ -231,6 +184,45 @@ TEST_CASE("what cannot be filled is refused before a filler is asked") {
     options.growth = 1;
     CHECK_THROWS_AS(fill(shapes::icosphere(1, 2), 0.1, none, options), InvalidOption);
   }
+}
+
+TEST_CASE("walls with faces that are reversed, missing, crossing or doubled give a valid mesh or none") {
+  enum Break { Reversed, Missing, Crossing, Doubled, MovedThrough };
+  int refused = 0, filled = 0;
+  for (const Break how : {Reversed, Missing, Crossing, Doubled, MovedThrough})
+    for (std::uint32_t i = 0; i < 10; ++i) {
+      const Polygons whole = shapes::box({2, 2, 2}, 4, true);
+      const std::uint32_t face = (i * 37 + 5) % static_cast<std::uint32_t>(whole.face_count());
+      Polygons wall{whole.positions, {}, {0}};
+      for (std::uint32_t f = 0; f < whole.face_count(); ++f) {
+        const auto its = whole.view().face(f);
+        if (f == face && how == Missing) continue;
+        if (f == face && how == Reversed) wall.add_face({its[0], its[2], its[1]});
+        else wall.add_face({its[0], its[1], its[2]});
+        if (f == face && how == Doubled) wall.add_face({its[1], its[2], its[0]});
+      }
+      const std::uint32_t corner = whole.view().face(face)[0];
+      if (how == MovedThrough) wall.positions[corner] *= -0.8;
+      if (how == Crossing) {
+        const auto first = static_cast<std::uint32_t>(wall.positions.size());
+        for (const Vec3d& by : {Vec3d(0.3, 0.1, 0.2), Vec3d(-0.3, 0.2, -0.1), Vec3d(0.1, -0.3, -0.2)})
+          wall.positions.push_back(wall.positions[corner] + by);
+        wall.add_face({first, first + 1, first + 2});
+      }
+      CAPTURE(how, i, face);
+      try {
+        const Filled made = fill(wall, -0.1, fill_from_middle);
+        require_mesh(made.mesh, enclosed_volume(made.mesh));
+        ++filled;
+      } catch (const InvalidInput&) {
+        ++refused;
+      } catch (const FillFailed&) {
+        ++refused;
+      }
+    }
+  CHECK(refused > 0);
+  CHECK(filled > 0);
+  CHECK(refused + filled == 50);
 }
 
 TEST_CASE("layers on curves are filled in their plane, and made one cell thick") {

@@ -211,15 +211,23 @@ TEST_CASE("layer cells: a plane of triangles, by numbers", "[layer_cells]") {
   CHECK(count(volume, CellType::Prism) == 64);
   for (std::size_t c = 0; c < 64; ++c)
     CHECK(cell_volume(volume, c) == Approx((c < 32 ? 0.5 : 0.75) / 32).epsilon(1e-12));
-  REQUIRE(volume.patches.size() == 3);
+  REQUIRE(volume.patches.size() == 6);
   CHECK(volume.patches[0].name == "wall");
   CHECK(volume.patches[0].face_count() == 32);
   CHECK(volume.patches[1].name == "outer");
   CHECK(volume.patches[1].kind == BoundaryPatch::Kind::Outer);
   CHECK(volume.patches[1].face_count() == 32);
-  CHECK(volume.patches[2].name == "sides");
-  CHECK(volume.patches[2].kind == BoundaryPatch::Kind::Side);
-  CHECK(volume.patches[2].face_count() == 32);
+  // Each side of the square is a patch of its own.
+  for (std::size_t i = 0; i < 4; ++i) {
+    const BoundaryPatch& side = volume.patches[2 + i];
+    CHECK(side.name == "sides_" + std::to_string(i + 1));
+    CHECK(side.kind == BoundaryPatch::Kind::Side);
+    CHECK(side.face_count() == 8);
+    const PatchFacts facts_of_side = patch_facts(volume)[2 + i];
+    CHECK(facts_of_side.faces == 8);
+    REQUIRE(facts_of_side.plane);
+    for (const auto p : side.corners) CHECK(facts_of_side.plane->height(volume.points[p]) == 0);
+  }
   CHECK(facts.border_sides == 16);
   CHECK(facts.unpaired_sides == 0);
   CHECK(field(volume.cell_fields, "layer").values[32] == 2);
@@ -340,7 +348,10 @@ TEST_CASE("layer cells: what carries nothing, repeats or folds up gives no cells
   CHECK(facts.role == std::vector<FaceRole>{FaceRole::Full, FaceRole::Bare, FaceRole::Full, FaceRole::Full,
                                             FaceRole::Repeated, FaceRole::Degenerate, FaceRole::Bare});
   CHECK(volume.points.size() == 16);  // not the far corner of the bare quad, nor the vertex in no face
-  CHECK(volume.patches.back().face_count() == 8);
+  std::size_t sides = 0;
+  for (const BoundaryPatch& patch : volume.patches)
+    if (patch.kind == BoundaryPatch::Kind::Side) sides += patch.face_count();
+  CHECK(sides == 8);
   layers.carries = {0, 0, 0, 0, 0, 0, 1};
   const VolumeMesh triangle = make_cells(mesh.view(), layers, {});
   check_cells(triangle);
@@ -374,7 +385,7 @@ TEST_CASE("layer cells: walls have the names of their faces", "[layer_cells]") {
   const WallNames names{{"a b", "outer", "a_b", "7", "none"}, {0, 1, 2, 3}};
   const VolumeMesh volume = make_cells(mesh.view(), layers_up(mesh, {1, 2}), names);
   check_cells(volume);
-  REQUIRE(volume.patches.size() == 7);
+  REQUIRE(volume.patches.size() == 10);
   CHECK(volume.patches[0].name == "a_b");
   CHECK(volume.patches[1].name == "outer_2");
   CHECK(volume.patches[2].name == "a_b_2");

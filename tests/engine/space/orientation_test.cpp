@@ -5,7 +5,9 @@
 #include <catch2/catch.hpp>
 
 #include "support/oracles.h"
+#include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/offset.h"
+#include "vdb_offset/run.h"
 #include "vdb_offset/shapes.h"
 
 using namespace vdb_offset;
@@ -186,4 +188,22 @@ TEST_CASE("orientation: many nested components, the same for any number of threa
   const OffsetResult one = offset(mesh.view(), options);
   options.threads = 2;
   CHECK(offset(mesh.view(), options).positions == one.positions);
+}
+
+TEST_CASE("the side of a point is that of the closest face, edge or vertex", "[orientation]") {
+  const Polygons box = shapes::box({2, 2, 2}, 3, false);
+  // Over a face, an edge and a corner; inside, and far away.
+  for (const Vec3d& outside :
+       {Vec3d(0.1, 0.2, 1.5), Vec3d(1.2, 1.3, 0.1), Vec3d(-1.1, -1.2, 1.3), Vec3d(50, -70, 20)}) {
+    CHECK(side_of_point(box.view(), outside) == 1);
+    CHECK(side_of_point(reversed(box).view(), outside) == -1);
+    CHECK(side_of_point(reversed(box).view(), outside, {}, Orient::FixDirectionOnly) == 1);
+  }
+  CHECK(side_of_point(box.view(), {0.3, 0.1, -0.9}) == -1);
+  CHECK(side_of_point(moved(box, {7e5, 0, 0}).view(), {7e5, 0.1, 0.9}) == -1);
+  const Polygons sheet = shapes::patch(2, 0, 4);
+  CHECK(side_of_point(sheet.view(), {0.1, 0.2, 0.3}) == 1);
+  CHECK(side_of_point(sheet.view(), {5, 0.2, -0.1}) == -1);
+  CHECK_THROWS_AS(side_of_point(box.view(), {1, 0.2, 0.3}), InvalidInput);
+  CHECK_THROWS_AS(side_of_point(Polygons{}.view(), {1, 0.2, 0.3}), InvalidInput);
 }

@@ -53,9 +53,10 @@ Distances evaluate(const Job& job, const DistanceRequest& request) {
 
 Distances scaled(const Distances& distances, double factor) {
   if (distances.uniform()) return factor * distances[0];
-  std::vector<double> each(distances.count());
+  std::vector<double> each(distances.count()), at_corner(distances.at_corner().begin(), distances.at_corner().end());
   for (std::size_t v = 0; v < each.size(); ++v) each[v] = factor * distances[v];
-  return Distances(std::move(each));
+  for (double& distance : at_corner) distance *= factor;
+  return at_corner.empty() ? Distances(std::move(each)) : Distances(std::move(each), std::move(at_corner));
 }
 
 }  // namespace vdb_offset::tool

@@ -40,18 +40,8 @@ PatchRequest parse_patch(const std::string& text) {
 }
 
 Vec3d parse_direction(const std::string& text) {
-  Vec3d direction(0.0);
-  std::size_t at = 0;
-  int count = 0;
-  for (; at <= text.size() && count < 3; ++count) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    const auto number = decimal<double>(text.substr(at, comma - at));
-    if (!number) break;
-    direction[count] = *number;
-    at = comma + 1;
-  }
-  require(count == 3 && at == text.size() + 1 && direction.length() > 0,
-          fmt::format("--direction: expected three numbers as in 1,0,0, got '{}'", text));
+  const Vec3d direction = parse_vector("--direction", text);
+  require(direction.length() > 0, fmt::format("--direction: expected three numbers as in 1,0,0, got '{}'", text));
   return direction;
 }
 

@@ -63,8 +63,8 @@ std::span<const HelpTopic> help_topics() {
   static const HelpTopic kTopics[] = {
       {"distances",
        "Distances and corners",
-       {"distance", "unit", "distance-from", "distance-of", "blend", "distance-xy", "distance-z", "fit", "clearance",
-        "corners", "miter-limit", "collision", "taper"}},
+       {"distance", "side-of", "unit", "distance-from", "distance-of", "blend", "distance-xy", "distance-z", "fit",
+        "clearance", "corners", "miter-limit", "collision", "taper"}},
       {"accuracy",
        "Accuracy and when to fail",
        {"tolerance", "max-faces", "refined-source", "map", "strict", "strict-faces", "strict-certified"}},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -36,7 +37,8 @@ double parse_fan_angle(const std::string& text) {
 /// y+ at the first height, below 0 for layers inward.
 double parse_y_plus(const std::string& text) {
   const auto number = decimal<double>(text);
-  require(number && *number != 0, fmt::format("--y-plus: expected a number other than 0, got '{}'", text));
+  require(number && std::isfinite(*number) && *number != 0,
+          fmt::format("--y-plus: expected a finite number other than 0, got '{}'", text));
   return *number;
 }
 
@@ -105,11 +107,10 @@ void declare_layers(CommandLine& line, Draft& draft) {
               length("--first-height", layers.first));
   line.option("--total-thickness", "T", "Height of all layers together, as --distance",
               length("--total-thickness", layers.total));
-  line.option(
-      "--last-height", "B",
-      "Height of the outermost layer alone, as --distance; 'edge', the mean length of the edges around a vertex, "
-      "makes its cells as high as they are wide",
-      length("--last-height", layers.last));
+  line.option("--last-height", "B",
+              "Height of the outermost layer alone, as --distance; the mean length of the edges around a vertex, edge, "
+              "makes its cells as high as they are wide",
+              length("--last-height", layers.last));
   line.option("--growth", "R",
               "Ratio of each layer's height to that of the layer below; without --layers the largest one allowed [1.2, "
               "or what the others say]",

@@ -36,6 +36,10 @@ void declare_distances(CommandLine& line, Draft& draft) {
       [&request](const std::string& text) {
         request.distances.push_back(parse_distance_of("--distance", text, request));
       });
+  line.option(
+      "--side-of", "X,Y,Z",
+      "Go to the side of INPUT that this point is on, in place of signs: inside of a closed surface, for one in it",
+      [&request](const std::string& text) { request.side_of = parse_vector("--side-of", text); });
   declare_part_distances(line, request);
   line.option("--mode", "MODE",
               "'topology' moves the mesh's own vertices; 'iso' captures the surface at the distance as a new mesh, "

@@ -67,7 +67,7 @@ void require_with_files(const Request& request) {
     given.insert(kLevelSet);
   require_rules(given, {{{"--faceted", "--fit-tolerance", "--collision cut"}, NeedsAnyOf, {kModel}},
                         {{"--inner", "--layers", "--heights", "--mode iso", "--tolerance", "--distance-xy", "--fit",
-                          "--symmetry", "--miter-limit", "--taper", "--collision merge", "--corners arc"},
+                          "--side-of", "--symmetry", "--miter-limit", "--taper", "--collision merge", "--corners arc"},
                          Excludes,
                          {kModel}},
                         {{"--distance-of", "--only", "--faceted"}, Excludes, {kHollowModel}},
@@ -222,6 +222,7 @@ void require_together(const GivenNames& given) {
       {{"--collision", "--taper", "--corners", "--distance-xy"}, Excludes, {"--fit"}},
       {{"--fit"}, NeedsAnyOf, {"--clearance"}},
       {{"--clearance"}, NeedsAnyOf, {"--obstacle", "--fit"}},
+      {{"--side-of"}, Excludes, {"--distance-xy", "--distance-z", "--fit", "--inner", "--mode iso"}},
       {{"--inner"}, NeedsAnyOf, {"--shell"}},
       {{"--distance-from"}, Excludes, {"--distance"}},
       {{"--voxel-size"}, Excludes, {"--voxels-per-distance"}},

@@ -99,6 +99,22 @@ PartDistance parse_distance_of_part(const char* option, const std::string& text,
   throw UsageError(fmt::format("{}: expected a part and its distance, as in face=3:0.4, got '{}'", option, text));
 }
 
+Vec3d parse_vector(const char* option, const std::string& text) {
+  Vec3d vector(0.0);
+  std::size_t at = 0;
+  int count = 0;
+  for (; at <= text.size() && count < 3; ++count) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const auto number = decimal<double>(text.substr(at, comma - at));
+    if (!number) break;
+    vector[count] = *number;
+    at = comma + 1;
+  }
+  require(count == 3 && at == text.size() + 1,
+          fmt::format("{}: expected three numbers as in 1,0,0, got '{}'", option, text));
+  return vector;
+}
+
 DistanceRequest parse_inner(const std::string& text, const Request& request) {
   DistanceRequest inner = parse_distance_of("--inner", text, request);
   require(inner.distance.expression || !inner.from.empty() || inner.distance.value > 0,

@@ -58,6 +58,8 @@ DistanceRequest parse_distance_of(const char* option, const std::string& text, c
 DistanceRequest parse_distance_from(const std::string& text, const Request& request);
 /// PART:D of an option, --distance-of or --layers-of.
 PartDistance parse_distance_of_part(const char* option, const std::string& text, const Request& request);
+/// Three numbers, as in 1,0,0.
+Vec3d parse_vector(const char* option, const std::string& text);
 /// The distance of an inner skin, above 0 if it is one for all vertices.
 DistanceRequest parse_inner(const std::string& text, const Request& request);
 

@@ -129,6 +129,7 @@ struct Request {
   std::string input, output;
   std::string config;                          ///< The file that options were taken from, too; empty: none.
   std::vector<DistanceRequest> distances;      ///< Empty for a scene that brings its own, and for layers.
+  std::optional<Vec3d> side_of;                ///< Distances go to the side of this point; they have no signs then.
   const char* distance_option = "--distance";  ///< The option that they were given with.
   std::vector<PartDistance> distances_of;      ///< Of parts; where several name a face, the last counts.
   GivenDistance blend;                         ///< Over how far distances of parts change into each other; 0: not.

@@ -93,6 +93,7 @@ std::string turned_round(const std::string& text, const Lengths& lengths) {
 /// The option that asks for the same offset to the other side.
 std::string option_for_other_side(const Job& job) {
   const std::optional<LayersRequest>& layers = job.request.layers;
+  if (job.request.side_of) return "use a point on the other side: --side-of";
   if (layers && !layers->heights.empty()) return "use heights below 0";
   const std::vector<LayerLength> given =
       layers ? layers->lengths() : std::vector<LayerLength>{{"--distance", &job.asked.front()}};

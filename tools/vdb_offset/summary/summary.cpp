@@ -193,6 +193,20 @@ std::string in_words(const LayerGrowth& growth) {
   return from == to ? from : from + " to " + to;
 }
 
+/// The patches that are written, and the planes that they lie in.
+void print_boundary(std::FILE* out, const LayerReport& report) {
+  for (const auto& [patch, kind, faces, plane] : report.boundary) {
+    std::string in_plane;
+    if (plane) {
+      const Vec3d& n = plane->normal;
+      const bool is_turned = n[0] + n[1] + n[2] < 0;
+      const SymmetryPlane shown{is_turned ? -n : n, (is_turned ? -plane->offset : plane->offset) + 0.0};
+      in_plane = " in " + planes_in_words({&shown, 1});
+    }
+    fmt::print(out, "patch      {}: {}, {} faces{}\n", patch, name(kind), faces, in_plane);
+  }
+}
+
 /// What layers are planned to be.
 void print_layers(std::FILE* out, const Job& job) {
   const Distances& first = job.distances.front();
@@ -318,6 +332,13 @@ void add_fill(const FillReport& fill, Summary& made) {
                               fill.triangles > 0 ? "triangles" : "tetrahedra",
                               fill.pyramids > 0 ? fmt::format(" and {} pyramids", fill.pyramids) : "",
                               fill.scaled_jacobian.least, fill.scaled_jacobian.quantile_01);
+  if (!fill.guessed_planes.empty())
+    made.remarks.add(
+        Gravity::Off,
+        fmt::format(
+            "straight borders lie in many planes: what is filled ends at {}, at right angles to the faces beside "
+            "them. To name another plane: --symmetry A,B,C,D",
+            planes_in_words(fill.guessed_planes)));
   // OpenFOAM warns of interpolation weights below 0.05, which a jump of about 20 makes.
   constexpr double kMostJump = 20;
   if (fill.jump.quantile_95 > kMostJump)
@@ -384,6 +405,7 @@ void print_layers_summary(const Job& job, const LayersResult& result, const Laye
   const bool verbose = job.request.verbose;
   if (verbose) {
     print_details(out, job, statistics, result.heights.back());
+    print_boundary(out, report);
     fmt::print(out, "{}{}", summary(report),
                layers_faces_in_words(statistics.faces, result.layer_statistics.first_faces, job.curves()));
   }

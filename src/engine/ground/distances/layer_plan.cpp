@@ -151,7 +151,8 @@ class LayerPlanner {
   }
 
   void require_below_total(std::size_t v, const char* what, double one, double total) const {
-    if (!(one < total))
+    // One layer may be as thick as all are.
+    if (!(count_ == 0 ? one <= total : one < total))
       throw InvalidInput(
           fmt::format("{}: expected a {} below the total thickness of {:g}, got {:g}", place(v), what, total, one));
   }
@@ -160,7 +161,8 @@ class LayerPlanner {
     if (growth <= kMostGrowth) return;
     throw InvalidInput(
         count_ == 1
-            ? place(v) + ": expected lengths that are the same, as there is one layer"
+            ? place(v) +
+                  ": expected lengths that are the same for one layer, and a last height above the first for more"
             : fmt::format(
                   "{}: expected lengths between which {} layers grow by no more than {:g} (more layers grow less)",
                   place(v), count_, kMostGrowth));

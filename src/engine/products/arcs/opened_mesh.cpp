@@ -100,8 +100,9 @@ OpenedMesh::OpenedMesh(const PreparedMesh& source, const OpenedSource::Faces& fa
     polygons_.positions[v] = stand_off(at, targets_.displacement[v]);
     targets_.displacement[v] = (at + targets_.displacement[v]) - polygons_.positions[v];
   }
-  options_.reserve = {};  // the source's run has asked for memory
-  options_.weld = {};     // by position alone: copies stand close to each other
+  options_.reserve = {};     // the source's run has asked for memory
+  options_.weld = {};        // by position alone: copies stand close to each other
+  options_.exact = nullptr;  // it knows the source's faces and vertices alone
   if (!options_.only.empty()) {
     options_.only.clear();
     for (const std::uint32_t f : faces.refinement.parent) options_.only.push_back(source.options().only[f]);

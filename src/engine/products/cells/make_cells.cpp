@@ -21,6 +21,7 @@
 
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
+#include "products/cells/side_planes.h"
 #include "products/layers/column_cells.h"
 
 namespace vdb_offset {
@@ -203,9 +204,33 @@ std::string side_name(std::size_t openings, std::set<std::string>& taken) {
     if (std::string name = "sides_" + std::to_string(n); taken.insert(name).second) return name;
 }
 
+/// Parts openings that run over several planes. Returns the number of openings.
+std::size_t part_openings(const LayerCells& cells, const VolumeMesh& volume, std::vector<OpenSide>& sides) {
+  std::vector<BoundarySide> areas;
+  areas.reserve(sides.size());
+  for (const auto& [c, k, opening] : sides) {
+    const auto ring = cells.columns.ring(c);
+    BoundarySide& side =
+        areas.emplace_back(BoundarySide{{ring[k], ring[(k + 1) % ring.size()]}, Vec3d(0.0), {}, opening});
+    for (std::size_t layer = 0; layer < cells.layers; ++layer) {
+      std::array<Index, 4> face;
+      const Index size = cells.columns.column(cells.points, c, layer).side(k, face);
+      for (Index i = 0; i < size; ++i) side.points.push_back(volume.points[face[i]]);
+      for (Index i = 1; i + 1 < size; ++i)
+        side.area += (volume.points[face[i]] - volume.points[face[0]])
+                         .cross(volume.points[face[i + 1]] - volume.points[face[0]]) /
+                     2.0;
+    }
+  }
+  const std::size_t count = part_by_planes(areas);
+  for (std::size_t i = 0; i < sides.size(); ++i) sides[i].opening = areas[i].opening;
+  return count;
+}
+
 void add_sides(const LayerCells& cells, VolumeMesh& volume) {
   std::vector<OpenSide> sides;
-  const std::size_t openings = keep_largest(find_openings(cells.points, cells.columns, sides), sides);
+  find_openings(cells.points, cells.columns, sides);
+  const std::size_t openings = keep_largest(part_openings(cells, volume, sides), sides);
   std::set<std::string> taken;
   for (const BoundaryPatch& patch : volume.patches) taken.insert(patch.name);
   const std::size_t first = volume.patches.size();

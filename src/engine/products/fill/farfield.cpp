@@ -17,44 +17,68 @@ namespace {
 
 // The edges of a sphere are 0.27 to 0.33 of its radius at two subdivisions, and those of a box a fourth of its longest
 // side: with three, or an eighth, bodies had 3 to 10 % more cells, all of them far away.
-constexpr int kSubdivisions = 2, kSegments = 24, kRings = 6;
+constexpr int kSubdivisions = 2, kSegments = 24, kRings = 6, kOfOctant = 5;
 constexpr double kCellsAlong = 4;
 
 // The least room between a body and the farfield, as a share of the body's length: a hundredth would make cells as
 // small there as on the body.
 constexpr double kLeastRoom = 0.1;
 
-/// A box along axes of its own, the last of which leads out of the planes that it ends at.
+/// A box along axes of its own, the last of which lead out of the planes that it ends at.
 struct Frame {
   std::array<Vec3d, 3> axis{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};
   Vec3d lowest{std::numeric_limits<double>::infinity()}, highest{-std::numeric_limits<double>::infinity()};
-  bool ends_above = false, ends_below = false;  // along the last axis
+  std::array<bool, 3> ends_above{}, ends_below{};  // along each axis
 
   Vec3d in_frame(const Vec3d& x) const { return {x.dot(axis[0]), x.dot(axis[1]), x.dot(axis[2])}; }
   Vec3d in_world(const Vec3d& x) const { return axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2]; }
   Vec3d size() const { return highest - lowest; }
   double length() const { return std::max({size()[0], size()[1], size()[2]}); }
+  bool ends_at(int k) const { return ends_above[k] || ends_below[k]; }
+  int planes() const { return ends_at(0) + ends_at(1) + ends_at(2); }
 };
+
+// Cosines: of directions that are the same, and how far those at right angles may be off, as in files of seven digits.
+constexpr double kSameDirection = 1e-9, kAtRightAngles = 1e-5;
+
+/// Axes of which the last are the planes' normals. \throw InvalidInput unless planes are parallel or at right angles
+std::array<Vec3d, 3> axes_of(std::span<const OpenPlane> planes) {
+  std::vector<Vec3d> normals;
+  for (const OpenPlane& plane : planes) {
+    bool is_known = false, is_across = true;
+    for (const Vec3d& other : normals) {
+      const double cosine = std::abs(plane.normal.dot(other));
+      is_known = is_known || cosine > 1 - kSameDirection;
+      is_across = is_across && cosine < kAtRightAngles;
+    }
+    if (is_known) continue;
+    if (!is_across)
+      throw InvalidInput(
+          "fill: expected openings in planes that are parallel or at right angles, got others (--farfield FILE)");
+    normals.push_back(plane.normal);
+  }
+  if (normals.empty()) return Frame().axis;
+  if (normals.size() > 1) return {normals[1].cross(normals[0]), normals[1], normals[0]};
+  const auto [u, v] = axes_across(normals[0]);
+  return {u, v, normals[0]};
+}
 
 Frame frame_of(std::span<const Vec3d> points, std::span<const OpenPlane> planes) {
   Frame frame;
-  if (!planes.empty()) {
-    const auto [u, v] = axes_across(planes[0].normal);
-    frame.axis = {u, v, planes[0].normal};
-  }
+  frame.axis = axes_of(planes);
   for (const Vec3d& point : points) {
     const Vec3d x = frame.in_frame(point);
     frame.lowest = openvdb::math::minComponent(frame.lowest, x);
     frame.highest = openvdb::math::maxComponent(frame.highest, x);
   }
-  for (const OpenPlane& plane : planes) {
-    const double towards = plane.normal.dot(frame.axis[2]);
-    if (std::abs(towards) < 1 - 1e-9)
-      throw InvalidInput("fill: expected openings in planes that are parallel, got others (--farfield FILE)");
-    const double place = plane.origin.dot(frame.axis[2]);
-    if (towards > 0) frame.highest[2] = place, frame.ends_above = true;
-    else frame.lowest[2] = place, frame.ends_below = true;
-  }
+  for (const OpenPlane& plane : planes)
+    for (int k = 0; k < 3; ++k) {
+      const double towards = plane.normal.dot(frame.axis[k]);
+      if (std::abs(towards) < 1 - kSameDirection) continue;
+      const double place = plane.origin.dot(frame.axis[k]);
+      if (towards > 0) frame.highest[k] = place, frame.ends_above[k] = true;
+      else frame.lowest[k] = place, frame.ends_below[k] = true;
+    }
   return frame;
 }
 
@@ -69,7 +93,7 @@ class GridBox {
   Polygons make() {
     for (int axis = 0; axis < 3; ++axis)
       for (const bool is_upper : {false, true})
-        if (axis < 2 || !(is_upper ? frame_.ends_above : frame_.ends_below)) add_side(axis, is_upper);
+        if (!(is_upper ? frame_.ends_above : frame_.ends_below)[axis]) add_side(axis, is_upper);
     return std::move(box_);
   }
 
@@ -107,16 +131,54 @@ class GridBox {
   Polygons box_;
 };
 
-/// A sphere around the middle of a frame's box, or half of one around that of the side at a plane.
+/// The octants of a sphere on the side of 0 that a frame's box is on along each axis that it ends at, each parted into
+/// rows of triangles.
+Polygons octants(const Frame& frame, double radius) {
+  Polygons sphere;
+  std::map<std::array<int, 3>, std::uint32_t> number;
+  for (int octant = 0; octant < 8; ++octant) {
+    std::array<int, 3> sign;
+    for (int k = 0; k < 3; ++k) sign[k] = (octant >> k) % 2 == 0 ? 1 : -1;
+    bool is_in = true;
+    for (int k = 0; k < 3; ++k) is_in = is_in && !(sign[k] > 0 ? frame.ends_above : frame.ends_below)[k];
+    if (!is_in) continue;
+    const auto point = [&](int i, int j) {
+      const std::array<int, 3> at{sign[0] * i, sign[1] * j, sign[2] * (kOfOctant - i - j)};
+      const auto [found, is_new] = number.try_emplace(at, static_cast<std::uint32_t>(sphere.positions.size()));
+      if (is_new) sphere.positions.push_back(Vec3d(at[0], at[1], at[2]).unit() * radius);
+      return found->second;
+    };
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      if (sign[0] * sign[1] * sign[2] > 0) sphere.add_face({a, b, c});
+      else sphere.add_face({a, c, b});
+    };
+    for (int i = 0; i < kOfOctant; ++i)
+      for (int j = 0; i + j < kOfOctant; ++j) {
+        add(point(i, j), point(i + 1, j), point(i, j + 1));
+        if (i + j + 1 < kOfOctant) add(point(i + 1, j), point(i + 1, j + 1), point(i, j + 1));
+      }
+  }
+  return sphere;
+}
+
+/// A sphere around the middle of a frame's box, or what lies on this side of the planes of one around that of the sides
+/// at them.
 Polygons sphere_around(const Frame& frame, double radius) {
-  if (frame.ends_above && frame.ends_below)
-    throw InvalidInput("farfield: expected a box, as the wall ends at two planes, got a sphere (--farfield box:10L)");
   Vec3d middle = (frame.lowest + frame.highest) / 2;
   std::array<Vec3d, 3> axis = frame.axis;
-  if (frame.ends_above) middle[2] = frame.highest[2], axis = {axis[1], axis[0], -axis[2]};
+  for (int k = 0; k < 3; ++k) {
+    if (frame.ends_above[k] && frame.ends_below[k])
+      throw InvalidInput("farfield: expected a box, as the wall ends at two planes, got a sphere (--farfield box:10L)");
+    if (frame.ends_at(k)) middle[k] = frame.ends_above[k] ? frame.highest[k] : frame.lowest[k];
+  }
   const Vec3d centre = frame.in_world(middle);
-  Polygons sphere =
-      frame.ends_above ? shapes::hemisphere(radius, kSegments, kRings) : shapes::icosphere(radius, kSubdivisions);
+  Polygons sphere;
+  if (frame.planes() > 1) sphere = octants(frame, radius);
+  else if (!frame.ends_at(2)) sphere = shapes::icosphere(radius, kSubdivisions);
+  else {
+    sphere = shapes::hemisphere(radius, kSegments, kRings);
+    if (frame.ends_above[2]) axis = {axis[1], axis[0], -axis[2]};
+  }
   // Exactly in the plane.
   for (Vec3d& x : sphere.positions) x = centre + axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2];
   return sphere;
@@ -176,14 +238,15 @@ Polygons make_farfield(const Farfield& farfield, std::span<const Vec3d> points, 
       throw InvalidInput(
           fmt::format("farfield: expected a box at least {:.3g} beyond the layers, got {:.3g}", room, reach));
     for (int k = 0; k < 3; ++k) {
-      if (k < 2 || !frame.ends_below) frame.lowest[k] -= reach;
-      if (k < 2 || !frame.ends_above) frame.highest[k] += reach;
+      if (!frame.ends_below[k]) frame.lowest[k] -= reach;
+      if (!frame.ends_above[k]) frame.highest[k] += reach;
     }
     return GridBox(frame).make();
   }
   // Its triangles come nearer to the middle than the radius, by 4 %.
   Vec3d half = frame.size() / 2;
-  if (frame.ends_above) half[2] *= 2;
+  for (int k = 0; k < 3; ++k)
+    if (frame.ends_at(k)) half[k] *= 2;
   const double least = 1.1 * half.length() + room;
   if (!(reach >= least))
     throw InvalidInput(

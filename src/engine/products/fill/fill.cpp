@@ -23,6 +23,7 @@
 #include "ground/system/parallel.h"
 #include "products/fill/check_front.h"
 #include "products/fill/farfield.h"
+#include "products/fill/folds.h"
 #include "products/fill/front.h"
 #include "products/fill/openings.h"
 #include "products/volume/cell_quality.h"
@@ -84,7 +85,7 @@ class Filling {
   /// Closes the front: its openings by caps if it encloses what is left, or else by the farfield, and by planes of
   /// symmetry between that and its openings.
   void close() {
-    std::vector<OpenPlane> planes = open_planes(volume_.points, open_edges(front_.triangles));
+    std::vector<OpenPlane> planes = open_planes(volume_, open_edges(front_.triangles));
     if (!planes.empty() && !options_.caps) {
       const Vec3d& place = planes[0].origin;
       throw InvalidInput(
@@ -95,10 +96,16 @@ class Filling {
     const bool has_farfield = !is_enclosed_by(volume_.points, front_.triangles, planes);
     if (has_farfield) {
       // What is to be filled lies around these edges, not between them.
-      for (OpenPlane& plane : planes) plane.normal = -plane.normal;
+      for (OpenPlane& plane : planes)
+        if (!plane.is_folded) plane.normal = -plane.normal;
       add_farfield(planes);
-      planes = open_planes(volume_.points, open_edges(front_.triangles));
+      planes = open_planes(volume_, open_edges(front_.triangles));
     }
+    guessed_planes_ = guessed_planes(volume_.points, planes);
+    const Folds folds = find_folds(volume_.points, planes);
+    if (!folds.is_closed) throw FillFailed("fill: expected openings in planes that enclose a domain, got others");
+    close_along(folds, options_.growth, options_.longest.value_or(std::numeric_limits<double>::infinity()),
+                volume_.points, planes);
     for (std::size_t i = 0; i < planes.size(); ++i) {
       const std::string number = planes.size() > 1 ? fmt::format("_{}", i + 1) : "";
       const std::string name = free_name((has_farfield ? "symmetry" : "cap") + number);
@@ -319,6 +326,7 @@ class Filling {
     report.added_points = volume_.points.size() - layer_points_;
     report.front = front_.triangles.size();
     report.seconds = seconds_;
+    report.guessed_planes = guessed_planes_;
     report.volume = filled_volume_;
     for (std::size_t c = layer_cells_; c < first_tetrahedron_; ++c) report.volume += cell_volume(volume_, c);
     const std::size_t made = volume_.cell_count() - layer_cells_;
@@ -338,6 +346,7 @@ class Filling {
   std::size_t layer_points_ = 0, layer_cells_ = 0, front_size_ = 0, first_tetrahedron_ = 0;
   double six_volumes_ = 0, filled_volume_ = 0, seconds_ = 0;
   Vec3d middle_{0.0};
+  std::vector<SymmetryPlane> guessed_planes_;
   std::vector<Index> of_domain_;  // the points that the filler gets, by its numbers
   std::vector<Index> on_front_;   // of each triangle of the front, the tetrahedron on it
 };

@@ -23,7 +23,7 @@ namespace vdb_offset {
 namespace {
 
 using Index = std::uint32_t;
-using Edge = std::array<Index, 2>;
+using PlaneEdge = std::array<Index, 2>;
 
 // The segments of a circle far away, whose size is what grows to there at a growth of 1.26; as many on a square.
 constexpr int kFarSegments = 24;
@@ -168,7 +168,7 @@ class PlaneFilling {
   void join(const PlaneMesh& mesh) {
     const auto first = static_cast<Index>(volume_.points.size()), given = static_cast<Index>(of_region_.size());
     for (const Vec2d& x : mesh.added) volume_.points.push_back(origin_ + axes_[0] * x[0] + axes_[1] * x[1]);
-    std::map<Edge, Index> cells;  // by the sides that they have
+    std::map<PlaneEdge, Index> cells;  // by the sides that they have
     for (const auto& triangle : mesh.triangles) {
       const auto cell = static_cast<Index>(volume_.cell_count());
       for (std::size_t k = 0; k < 3; ++k) {

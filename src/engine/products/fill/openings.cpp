@@ -12,16 +12,19 @@
 #include "ground/numbers/disjoint_sets.h"
 #include "ground/plane/plane_mesh.h"
 #include "products/fill/check_front.h"
+#include "products/fill/folds.h"
 
 namespace vdb_offset {
 namespace {
 
 using Index = std::uint32_t;
-using Edge = std::array<Index, 2>;
+using OpenEdge = std::array<Index, 2>;
 
 // How far an opening's edges may be off their plane, as a share of its size. Flat ones are off by rounding. Beyond,
 // flat caps would lean visibly towards the layers' sides.
 constexpr double kOffPlane = 1e-2;
+// Normals that are to be along an axis have at least this component. Reasoned: openings' edges are this flat.
+constexpr double kAcross = 0.999;
 // Openings are in one plane if these are so near each other, as a share of the larger one's size.
 constexpr double kOneOpeningPlane = 1e-6;
 
@@ -32,7 +35,7 @@ struct EdgeExtent {
   double size = 0;  // the largest distance from the middle
 };
 
-EdgeExtent edge_extent(std::span<const Vec3d> points, std::span<const Edge> edges) {
+EdgeExtent edge_extent(std::span<const Vec3d> points, std::span<const OpenEdge> edges) {
   EdgeExtent extent;
   double weights = 0;
   for (const auto& [a, b] : edges) {
@@ -48,18 +51,18 @@ EdgeExtent edge_extent(std::span<const Vec3d> points, std::span<const Edge> edge
   return extent;
 }
 
-/// A plane through edges. Where they are all at one place along an axis, it is exactly at right angles to that.
-OpenPlane plane_of(std::span<const Vec3d> points, std::vector<Edge> edges) {
+/// A plane through edges, with a normal of any length. Where they are all at one place along an axis, it is exactly at
+/// right angles to that.
+OpenPlane plane_through(std::span<const Vec3d> points, std::vector<OpenEdge> edges, const Vec3d& normal) {
   const EdgeExtent extent = edge_extent(points, edges);
-  OpenPlane plane{extent.middle, extent.normal, std::move(edges)};
-  if (!(plane.normal.length() > kOneOpeningPlane * extent.size * extent.size))
-    throw InvalidInput(
-        fmt::format("fill: expected openings around an area, got one without at ({:.6g}, {:.6g}, {:.6g})",
-                    extent.middle[0], extent.middle[1], extent.middle[2]));
-  plane.normal.normalize();
+  OpenPlane plane{extent.middle, normal, std::move(edges)};
+  plane.normal.normalize(0.0);
   for (int axis = 0; axis < 3; ++axis) {
     const double place = points[plane.edges[0][0]][axis];
-    if (!std::ranges::all_of(plane.edges, [&](const Edge& edge) { return points[edge[0]][axis] == place; })) continue;
+    const bool is_across = std::abs(plane.normal[axis]) > kAcross;
+    if (!is_across ||
+        !std::ranges::all_of(plane.edges, [&](const OpenEdge& edge) { return points[edge[0]][axis] == place; }))
+      continue;
     const double side = plane.normal[axis] > 0 ? 1 : -1;
     plane.normal = Vec3d(0.0);
     plane.normal[axis] = side;
@@ -75,24 +78,154 @@ OpenPlane plane_of(std::span<const Vec3d> points, std::vector<Edge> edges) {
   return plane;
 }
 
+/// The plane that edges around an area lie in.
+OpenPlane plane_of(std::span<const Vec3d> points, std::vector<OpenEdge> edges) {
+  const EdgeExtent extent = edge_extent(points, edges);
+  if (!(extent.normal.length() > kOneOpeningPlane * extent.size * extent.size))
+    throw InvalidInput(
+        fmt::format("fill: expected openings around an area, got one without at ({:.6g}, {:.6g}, {:.6g})",
+                    extent.middle[0], extent.middle[1], extent.middle[2]));
+  return plane_through(points, std::move(edges), extent.normal);
+}
+
 /// The patches of sides, by the edges of their faces.
-std::map<Edge, Index> sides_at(const VolumeMesh& volume, std::span<const Edge> edges) {
-  std::set<Edge> wanted;
-  const auto sorted = [](Index a, Index b) { return Edge{std::min(a, b), std::max(a, b)}; };
+std::map<OpenEdge, Index> sides_at(const VolumeMesh& volume, std::span<const OpenEdge> edges) {
+  std::set<OpenEdge> wanted;
+  const auto sorted = [](Index a, Index b) { return OpenEdge{std::min(a, b), std::max(a, b)}; };
   for (const auto& [a, b] : edges) wanted.insert(sorted(a, b));
-  std::map<Edge, Index> found;
+  std::map<OpenEdge, Index> found;
   for (Index i = 0; i < volume.patches.size(); ++i) {
     const BoundaryPatch& patch = volume.patches[i];
     if (patch.kind != BoundaryPatch::Kind::Side) continue;
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
       const auto face = patch.face(f);
       for (std::size_t k = 0; k < face.size(); ++k)
-        if (const Edge edge = sorted(face[k], face[(k + 1) % face.size()]); wanted.contains(edge))
+        if (const OpenEdge edge = sorted(face[k], face[(k + 1) % face.size()]); wanted.contains(edge))
           found.emplace(edge, i);
     }
   }
   return found;
 }
+
+/// Twice the area of a patch, out of the mesh.
+Vec3d area_of(const VolumeMesh& volume, const BoundaryPatch& patch) {
+  Vec3d sum(0.0);
+  for (std::size_t f = 0; f < patch.face_count(); ++f) {
+    const auto face = patch.face(f);
+    const Vec3d& first = volume.points[face[0]];
+    for (std::size_t k = 1; k + 1 < face.size(); ++k)
+      sum += (volume.points[face[k]] - first).cross(volume.points[face[k + 1]] - first);
+  }
+  return sum;
+}
+
+/// Finds the planes of open edges, loop by loop.
+class OpenPlaneFinder {
+ public:
+  OpenPlaneFinder(const VolumeMesh& volume, std::span<const OpenEdge> edges)
+      : volume_(volume), sides_(sides_at(volume, edges)) {}
+
+  std::vector<OpenPlane> run(std::span<const OpenEdge> edges) {
+    std::vector<std::vector<OpenEdge>> on_known;  // loops over several planes without sides, as those of the farfield
+    for (std::vector<OpenEdge>& loop : loops_of(edges)) {
+      const std::map<Index, std::vector<OpenEdge>> by_side = parted_by_sides(loop);
+      if (by_side.size() > 1) add_folded(by_side);
+      else if (is_flat(loop)) add(plane_of(volume_.points, std::move(loop)));
+      else on_known.push_back(std::move(loop));
+    }
+    for (const auto& loop : on_known) add_to_known(loop);
+    turn_by_largest();
+    return std::move(planes_);
+  }
+
+ private:
+  static std::vector<std::vector<OpenEdge>> loops_of(std::span<const OpenEdge> edges) {
+    std::map<Index, Index> number;
+    for (const auto& edge : edges)
+      for (const Index p : edge) number.try_emplace(p, static_cast<Index>(number.size()));
+    DisjointSets joined(number.size());
+    for (const auto& [a, b] : edges) joined.join(number[a], number[b]);
+    std::map<Index, std::vector<OpenEdge>> of_loop;
+    for (const auto& edge : edges) of_loop[joined.first(number[edge[0]])].push_back(edge);
+    std::vector<std::vector<OpenEdge>> loops;
+    loops.reserve(of_loop.size());
+    for (auto& [first, loop] : of_loop) loops.push_back(std::move(loop));
+    return loops;
+  }
+
+  /// Edges by the patch of sides that they belong to, those without one by kNone.
+  std::map<Index, std::vector<OpenEdge>> parted_by_sides(const std::vector<OpenEdge>& loop) const {
+    std::map<Index, std::vector<OpenEdge>> parted;
+    for (const OpenEdge& edge : loop) {
+      const auto side = sides_.find({std::min(edge[0], edge[1]), std::max(edge[0], edge[1])});
+      parted[side == sides_.end() ? kNone : side->second].push_back(edge);
+    }
+    if (parted.size() == 2 && parted.contains(kNone)) return {};  // one plane, of which some edges have no layers
+    return parted;
+  }
+
+  bool is_flat(const std::vector<OpenEdge>& loop) const {
+    try {
+      plane_of(volume_.points, loop);
+      return true;
+    } catch (const InvalidInput&) {
+      if (planes_.empty()) throw;
+      return false;
+    }
+  }
+
+  void add_folded(const std::map<Index, std::vector<OpenEdge>>& by_side) {
+    for (const auto& [side, edges] : by_side) {
+      if (side == kNone) continue;
+      OpenPlane plane = plane_through(volume_.points, edges, area_of(volume_, volume_.patches[side]));
+      plane.is_folded = true;
+      add(std::move(plane));
+    }
+    if (const auto bare = by_side.find(kNone); bare != by_side.end()) add_to_known(bare->second);
+  }
+
+  /// Adds edges to the known planes that they lie in.
+  void add_to_known(const std::vector<OpenEdge>& edges) {
+    const double size = edge_extent(volume_.points, edges).size;
+    for (const OpenEdge& edge : edges) {
+      const auto lies_in = [&](const OpenPlane& plane) {
+        return std::ranges::all_of(edge, [&](Index p) {
+          return std::abs((volume_.points[p] - plane.origin).dot(plane.normal)) < kOneOpeningPlane * size;
+        });
+      };
+      const auto plane = std::ranges::find_if(planes_, lies_in);
+      if (plane == planes_.end()) plane_of(volume_.points, edges);
+      else plane->edges.push_back(edge);
+    }
+  }
+
+  void add(OpenPlane plane) {
+    const auto is_same = [&](const OpenPlane& other) {
+      const double size =
+          std::max(edge_extent(volume_.points, plane.edges).size, edge_extent(volume_.points, other.edges).size);
+      return plane.normal.cross(other.normal).length() < kOneOpeningPlane &&
+             std::abs((plane.origin - other.origin).dot(other.normal)) < kOneOpeningPlane * size;
+    };
+    const auto known = std::ranges::find_if(planes_, is_same);
+    if (known == planes_.end()) {
+      planes_.push_back(std::move(plane));
+      return;
+    }
+    known->edges.insert(known->edges.end(), plane.edges.begin(), plane.edges.end());
+    if (plane.is_folded && !known->is_folded) known->is_folded = true, known->normal = plane.normal;
+  }
+
+  /// The larger ones of several loops in a plane are around the others, and say what is outside.
+  void turn_by_largest() {
+    for (OpenPlane& plane : planes_)
+      if (!plane.is_folded && edge_extent(volume_.points, plane.edges).normal.dot(plane.normal) < 0)
+        plane.normal = -plane.normal;
+  }
+
+  const VolumeMesh& volume_;
+  std::map<OpenEdge, Index> sides_;
+  std::vector<OpenPlane> planes_;
+};
 
 class Cover {
  public:
@@ -112,14 +245,14 @@ class Cover {
       }
       region.segments.push_back({number_.at(a), number_.at(b)});
     }
-    mesh_ = mesh_plane(region);
+    mesh_ = meshed(region);
     first_added_ = static_cast<Index>(volume_.points.size());
     for (const Vec2d& x : mesh_.added) volume_.points.push_back(plane_.origin + u * x[0] + v * x[1]);
   }
 
   /// Puts the triangles into patches: those of connected ones around which sides lie, or else a new one.
   void add_to(const std::string& name, bool is_symmetric) {
-    const std::map<Edge, Index> sides = sides_at(volume_, plane_.edges);
+    const std::map<OpenEdge, Index> sides = sides_at(volume_, plane_.edges);
     if (is_symmetric) make_symmetric(sides, name);
     DisjointSets pieces(given_.size() + mesh_.added.size());
     for (const auto& [a, b, c] : mesh_.triangles) pieces.join(a, b), pieces.join(b, c);
@@ -139,6 +272,18 @@ class Cover {
   }
 
  private:
+  PlaneMesh meshed(const PlaneRegion& region) const {
+    try {
+      return mesh_plane(region);
+    } catch (const InvalidInput& error) {
+      const Vec3d& place = plane_.origin;
+      throw InvalidInput(fmt::format(
+          "fill: expected an opening around ({:.6g}, {:.6g}, {:.6g}) that a plane can cover, got another ({}; "
+          "close the surface there)",
+          place[0], place[1], place[2], error.what()));
+    }
+  }
+
   static BoundaryPatch::Kind kind_of(bool is_symmetric) {
     return is_symmetric ? BoundaryPatch::Kind::Symmetry : BoundaryPatch::Kind::Side;
   }
@@ -152,7 +297,7 @@ class Cover {
   }
 
   /// The sides of all bodies that end at the plane belong to it.
-  void make_symmetric(const std::map<Edge, Index>& sides, const std::string& name) {
+  void make_symmetric(const std::map<OpenEdge, Index>& sides, const std::string& name) {
     std::set<Index> patches;
     for (const auto& [edge, side] : sides) patches.insert(side);
     for (const Index i : patches) {
@@ -183,46 +328,47 @@ std::array<Vec3d, 2> axes_across(const Vec3d& normal) {
   Vec3d along(0.0);
   along[least] = 1;
   Vec3d first = along - normal * normal[least];
-  first.normalize();
+  first.normalize(0.0);
   return {first, normal.cross(first)};
 }
 
-std::vector<OpenPlane> open_planes(std::span<const Vec3d> points, std::span<const Edge> edges) {
-  std::map<Index, Index> number;
-  for (const auto& edge : edges)
-    for (const Index p : edge) number.try_emplace(p, static_cast<Index>(number.size()));
-  DisjointSets loops(number.size());
-  for (const auto& [a, b] : edges) loops.join(number[a], number[b]);
-  std::map<Index, std::vector<Edge>> of_loop;
-  for (const auto& edge : edges) of_loop[loops.first(number[edge[0]])].push_back(edge);
-  std::vector<OpenPlane> planes;
-  for (auto& [loop, its_edges] : of_loop) {
-    OpenPlane plane = plane_of(points, std::move(its_edges));
-    const auto is_same = [&](const OpenPlane& other) {
-      const double size = std::max(edge_extent(points, plane.edges).size, edge_extent(points, other.edges).size);
-      return plane.normal.cross(other.normal).length() < kOneOpeningPlane &&
-             std::abs((plane.origin - other.origin).dot(other.normal)) < kOneOpeningPlane * size;
-    };
-    const auto known = std::ranges::find_if(planes, is_same);
-    if (known == planes.end()) planes.push_back(std::move(plane));
-    else known->edges.insert(known->edges.end(), plane.edges.begin(), plane.edges.end());
+std::vector<OpenPlane> open_planes(const VolumeMesh& volume, std::span<const OpenEdge> edges) {
+  return OpenPlaneFinder(volume, edges).run(edges);
+}
+
+std::vector<SymmetryPlane> guessed_planes(std::span<const Vec3d> points, std::span<const OpenPlane> planes) {
+  std::vector<SymmetryPlane> guessed;
+  for (const OpenPlane& plane : planes) {
+    const Vec3d &first = points[plane.edges[0][0]], &n = plane.normal;
+    Vec3d along = points[plane.edges[0][1]] - first;
+    along.normalize(0.0);
+    const bool is_across = std::abs(n[0]) == 1 || std::abs(n[1]) == 1 || std::abs(n[2]) == 1;
+    const double size = edge_extent(points, plane.edges).size;
+    const bool is_line = std::ranges::all_of(plane.edges, [&](const OpenEdge& edge) {
+      const Vec3d to = points[edge[1]] - first;
+      return (to - along * along.dot(to)).length() < kOffPlane * size;
+    });
+    if (is_line && !is_across) guessed.push_back({n, n.dot(plane.origin)});
   }
-  // The larger ones of several loops in a plane are around the others, and say what is outside.
-  for (OpenPlane& plane : planes)
-    if (edge_extent(points, plane.edges).normal.dot(plane.normal) < 0) plane.normal = -plane.normal;
-  return planes;
+  return guessed;
 }
 
 bool is_enclosed_by(std::span<const Vec3d> points, std::span<const FrontTriangle> front,
                     std::span<const OpenPlane> openings) {
-  std::vector<Vec3d> with_middles(points.begin(), points.end());
+  std::vector<Vec3d> all(points.begin(), points.end());
+  std::vector<OpenPlane> planes(openings.begin(), openings.end());
+  const Folds folds = find_folds(points, openings);
+  if (!folds.is_closed) return false;
+  // One edge along each fold does, as areas alone count.
+  constexpr double kCoarse = 1e6;
+  close_along(folds, kCoarse, std::numeric_limits<double>::infinity(), all, planes);
   std::vector<FrontTriangle> closed(front.begin(), front.end());
-  for (const OpenPlane& plane : openings) {
-    const auto middle = static_cast<Index>(with_middles.size());
-    with_middles.push_back(plane.origin);
+  for (const OpenPlane& plane : planes) {
+    const auto middle = static_cast<Index>(all.size());
+    all.push_back(plane.origin);
     for (const auto& [a, b] : plane.edges) closed.push_back({{a, b, middle}, kNone, kNone});
   }
-  return is_enclosed(with_middles, closed);
+  return is_enclosed(all, closed);
 }
 
 void cover(const OpenPlane& plane, const FillOptions& options, const std::string& name, bool is_symmetric,

@@ -16,14 +16,18 @@ struct OpenPlane {
   Vec3d origin;
   Vec3d normal;  ///< Unit length.
   std::vector<std::array<std::uint32_t, 2>> edges;
+  bool is_folded = false;  ///< Its edges go on in other planes, and the normal leads out of what is to be filled.
 };
 
 /// Two axes across a normal of unit length, which make a right-handed frame with it; axes of coordinates if it is one.
 std::array<Vec3d, 2> axes_across(const Vec3d& normal);
 
-/// The planes that a front's open edges lie in.
-/// \throw InvalidInput where edges that are connected do not lie in a plane
-std::vector<OpenPlane> open_planes(std::span<const Vec3d> points, std::span<const std::array<std::uint32_t, 2>> edges);
+/// The planes that a front's open edges lie in. Edges that are connected lie in one, or in those of the patches of
+/// sides that they belong to. \throw InvalidInput where they do not
+std::vector<OpenPlane> open_planes(const VolumeMesh& volume, std::span<const std::array<std::uint32_t, 2>> edges);
+
+/// The planes across no axis of which all edges are on one line, so that others could be meant.
+std::vector<SymmetryPlane> guessed_planes(std::span<const Vec3d> points, std::span<const OpenPlane> planes);
 
 /// Whether a front would enclose what is to be filled if its openings were closed: then it is inside, as in a pipe.
 /// Else it is around the front, as around half a body.

@@ -84,7 +84,7 @@ class Pyramids {
     const auto& corners = front_.triangles[triangle].corners;
     const Index third = *std::find_if(corners.begin(), corners.end(), [&](Index p) { return p != a && p != b; });
     Vec3d along = point(b) - point(a);
-    along.normalize();
+    along.normalize(0.0);
     const auto across = [&](const Vec3d& x) {
       const Vec3d from = x - point(a);
       return from - along * from.dot(along);
@@ -103,7 +103,7 @@ class Pyramids {
         for (const Index t : beside.at(edge(a, b))) {
           if (t == quads_[q].triangle || t == quads_[q].triangle + 1) continue;
           Vec3d along = point(b) - point(a);
-          along.normalize();
+          along.normalize(0.0);
           const Vec3d from = base.middle - point(a);
           const double reach = (from - along * from.dot(along)).length();
           const double angle = std::min(kShareOfAngle * free_angle(base, a, b, t), std::numbers::pi / 3);

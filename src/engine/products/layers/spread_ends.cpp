@@ -189,8 +189,8 @@ class EndSpreader {
   }
 
   /// The share of the wall's edge below which an edge is crowded: `aim`, or less where the straight ways along its
-  /// vertices' normals bring these nearer to each other, as inside of a pipe. Beside a sharp edge that says nothing: the
-  /// normals there lean towards its neighbours.
+  /// vertices' normals bring these nearer to each other, as inside of a pipe. Beside a sharp edge that says nothing:
+  /// the normals there lean towards its neighbours.
   double least_share(std::uint32_t v, const Spring& edge, double aim) const {
     if (along_sharp_edges(v).empty() != along_sharp_edges(edge.other).empty()) return aim;
     const auto straight = [&](std::uint32_t w) { return start_direction(part_, on_part(w)) * input_.distances[w]; };

@@ -66,4 +66,15 @@ Json fill_json(const FillReport& fill) {
           {"seconds", fill.seconds}};
 }
 
+Json boundary_json(std::span<const PatchFacts> boundary) {
+  Json patches = Json::array();
+  for (const auto& [patch, kind, faces, plane] : boundary) {
+    Json each = {{"name", patch}, {"kind", name(kind)}, {"faces", faces}};
+    if (plane)
+      each["plane"] = {{"normal", {plane->normal[0], plane->normal[1], plane->normal[2]}}, {"offset", plane->offset}};
+    patches.push_back(each);
+  }
+  return patches;
+}
+
 }  // namespace vdb_offset

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 
 #include "vdb_offset/cells.h"
 #include "vdb_offset/result.h"
@@ -15,5 +16,6 @@ nlohmann::ordered_json spread_json(const Spread& spread);
 nlohmann::ordered_json shell_json(const ShellFacts& shell);
 nlohmann::ordered_json cad_json(const CadFileFacts& cad);
 nlohmann::ordered_json fill_json(const FillReport& fill);
+nlohmann::ordered_json boundary_json(std::span<const PatchFacts> boundary);
 
 }  // namespace vdb_offset

@@ -268,6 +268,7 @@ Json layers_json(const LayerReport& layers) {
                           {"skewness", layers.foam->skewness},
                           {"skew_faces", layers.foam->skew_faces}};
   report["patches"] = patches;
+  if (!layers.boundary.empty()) report["boundary"] = boundary_json(layers.boundary);
   return report;
 }
 

@@ -358,8 +358,27 @@ class PlaneFinder {
     if (!(across.lengthSqr() > 0.5)) return;
     across.normalize();
     for (int k = 0; k < 3; ++k)
-      if (std::abs(across[k]) >= 1 - kSameNormal) across = axis_of(k);
+      if (std::abs(across[k]) >= 1 - kSameNormal || turns_to_axis(piece, across, k)) across = axis_of(k);
     hold_piece(piece, {across, spread(piece, across).first}, false);
+  }
+
+  /// Whether the faces along a straight piece stand for a curved surface that meets the plane of the piece across an
+  /// axis at right angles, as half a pipe meets the plane through its axis: as much as normals turn towards the next
+  /// faces, they turn the other way towards the piece.
+  bool turns_to_axis(std::span<const std::uint32_t> piece, const Vec3d& across, int k) const {
+    constexpr double kNearAxis = 0.86;  // cosine: 30 degrees; pipes of six sides turn so much. Reasoned.
+    if (std::abs(across[k]) < kNearAxis || spread(piece, axis_of(k)).second > 2 * tolerance_) return false;
+    double off_faces = 0, off_piece = 0;
+    for (std::size_t i = 1; i + 1 < piece.size(); ++i)
+      for (const auto t : surface_.triangles_around(piece[i]))
+        for (const auto w : surface_.triangles[t]) {
+          Vec3d farther = surface_.vertex_normals[w];
+          if (surface_.conormals[w].lengthSqr() > 0 || !farther.normalize()) continue;
+          const Vec3d& n = surface_.triangle_normals[t];
+          off_faces += n[k];
+          off_piece += 2 * n.dot(farther) * n[k] - farther[k];
+        }
+    return std::abs(off_piece) < std::abs(off_faces) / 2;
   }
 
   /// Gives one vertex its conormals: it stays in one plane, on the line where two meet, or at the point where three do.
