@@ -54,6 +54,7 @@ TEST_CASE("--layers says in one line which of its lengths do not go together", "
   refused("--layers 3", "--layers needs --first-height or");
   refused("--first-height 0.1", "--first-height needs --layers");
   refused("--layers 3 --y-plus 1", "--y-plus needs one of --viscosity, --reynolds");
+  refused("--layers 3 --y-plus 1 --viscosity 1 --reynolds 10", "--y-plus needs only one of --viscosity, --reynolds");
   refused("--layers 3 --y-plus 0 --reynolds 10", "--y-plus: expected a finite number other than 0, got '0'");
   refused("--layers 3 --y-plus 1 --first-height 1 --reynolds 10", "exclude each other");
   refused("--layers 3 --first-height 0.1 --speed 3", "--speed needs --case or --y-plus");

@@ -87,7 +87,9 @@ TEST_CASE("layer plan: what cannot be is refused, with what was expected", "[lay
   refused({.count = 3, .total = 0.1, .last = 0.2}, "a last height below the total thickness");
   refused({.count = 2, .first = 0.001, .last = 1}, "2 layers grow by no more than 10");
   refused({.count = 1, .first = 0.001, .last = 1}, "for one layer");
-  refused({.growth = 0.9, .first = 0.01, .total = 1}, "no more than 1000");
+  refused({.growth = 0.9, .first = 0.01, .total = 1},
+          "with which 1000 layers or less come from a first height of 0.01 to 1, got 0.9");
+  refused({.count = 400, .growth = 10, .total = 1}, "expected fewer layers, or a growth below 10");
   refused({.count = 0, .growth = 1, .first = 1}, "expected 1 to 1000, got 0");
   refused({.count = 3, .growth = 11, .first = 1}, "a growth above 0, up to 10, got 11");
   refused({.count = 3, .first = Distances(std::vector{1.0, 2.0}), .total = Distances(std::vector{9.0})},

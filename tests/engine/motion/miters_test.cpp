@@ -8,6 +8,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "ground/mesh/triangulate.h"
 #include "space/sheets/sheet_sides.h"
 #include "support/oracles.h"
 #include "vdb_offset/curve_offset.h"
@@ -204,7 +205,7 @@ double worst_off_planes(PolygonView source, const OffsetResult& result) {
   double worst = 0;
   for (std::size_t f = 0; f < source.face_count(); ++f) {
     const auto face = source.face(f);
-    const Vec3d normal = newell_normal(source, f).unit();
+    const Vec3d normal = area_vector(source, f).unit();
     for (const auto v : face)
       worst =
           std::max(worst, std::abs(normal.dot(result.positions[v] - source.positions[face[0]]) - result.distances[v]));
@@ -291,7 +292,7 @@ TEST_CASE("miter: round corners have the faces at the distance where vertices ca
   options.corners = Corners::Round;
   const OffsetResult result = offset(ringed.view(), options);
   for (std::size_t f = 0; f < ringed.face_count(); ++f) {
-    const Vec3d normal = newell_normal(ringed.view(), f).unit();
+    const Vec3d normal = area_vector(ringed.view(), f).unit();
     for (const auto v : ringed.view().face(f)) {
       const double height = normal.dot(result.positions[v] - ringed.positions[v]);
       if (v == 12 + 3) CHECK(height == Approx(-0.05 / std::sqrt(2)));
@@ -398,7 +399,7 @@ TEST_CASE("miter: of five planes that have no common point all are as far or far
   CHECK(result.statistics.miters.excess < 0.5);
   double least = 1, most = 0;
   for (std::size_t f = 1; f < 6; ++f) {
-    const Vec3d normal = newell_normal(roof.view(), f).unit();
+    const Vec3d normal = area_vector(roof.view(), f).unit();
     const double moved = normal.dot(result.positions[5] - roof.positions[5]);
     least = std::min(least, moved);
     most = std::max(most, moved);
@@ -472,7 +473,7 @@ TEST_CASE("miter: each layer has its height on the faces, up to the edges", "[mi
   const LayersResult layers = grow_layers(box.view(), heights, options);
   double worst = 0;
   for (std::size_t f = 0; f < box.face_count(); ++f) {
-    const Vec3d normal = newell_normal(box.view(), f).unit();
+    const Vec3d normal = area_vector(box.view(), f).unit();
     for (const auto v : box.view().face(f))
       for (std::size_t k = 0; k < heights.size(); ++k)
         worst =
@@ -513,7 +514,7 @@ TEST_CASE("miter: the edge of a part meets the planes of the faces that stay", "
       const OffsetResult result = offset(mesh.view(), options);
       double worst = 0;
       for (std::size_t f = 0; f < only.size(); ++f) {
-        const Vec3d normal = newell_normal(mesh.view(), f).unit();
+        const Vec3d normal = area_vector(mesh.view(), f).unit();
         for (const auto v : mesh.view().face(f))
           worst = std::max(worst, std::abs(normal.dot(result.positions[v] - mesh.positions[v]) - only[f] * distance));
       }

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "ground/mesh/triangulate.h"
 #include "space/sheets/sheet_sides.h"
 #include "support/oracles.h"
 #include "vdb_offset/shapes.h"
@@ -201,8 +202,8 @@ void require_refinement(const Polygons& mesh, const Refinement& refined) {
   for (std::size_t f = 0; f < polygons.face_count(); ++f) {
     const auto piece = polygons.view().face(f), whole = mesh.view().face(refined.parent[f]);
     const bool is_whole = std::equal(piece.begin(), piece.end(), whole.begin(), whole.end());
-    const Vec3d normal = newell_normal(polygons.view(), f);
-    wrong_pieces += !is_whole && (piece.size() != 3 || normal.dot(newell_normal(mesh.view(), refined.parent[f])) <= 0);
+    const Vec3d normal = area_vector(polygons.view(), f);
+    wrong_pieces += !is_whole && (piece.size() != 3 || normal.dot(area_vector(mesh.view(), refined.parent[f])) <= 0);
     area[refined.parent[f]] += normal;
     const auto on_face = [&](std::uint32_t v) { return std::find(whole.begin(), whole.end(), v) != whole.end(); };
     for (const auto v : piece) {
@@ -217,7 +218,7 @@ void require_refinement(const Polygons& mesh, const Refinement& refined) {
   CHECK(wrong_pieces == 0);
   double worst = 0;
   for (std::size_t f = 0; f < area.size(); ++f) {
-    const Vec3d whole = newell_normal(mesh.view(), f);
+    const Vec3d whole = area_vector(mesh.view(), f);
     worst = std::max(worst, (area[f] - whole).length() / whole.length());
   }
   CHECK(worst < 1e-12);
@@ -434,7 +435,7 @@ TEST_CASE("refined triangles: pieces have corners of their own where vertices ha
   Polygons hanging;
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
     const auto face = mesh.view().face(f);
-    const Vec3d normal = newell_normal(mesh.view(), f);
+    const Vec3d normal = area_vector(mesh.view(), f);
     std::vector<std::uint32_t> corners;
     for (std::size_t k = 0; k < face.size(); ++k) {
       const Vec3d from = mesh.positions[face[k]], to = mesh.positions[face[(k + 1) % face.size()]];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ground/mesh/triangulate.h"
 #include "space/sheets/sheet_sides.h"
 #include "support/folder.h"
 #include "support/rooms.h"
@@ -35,7 +36,7 @@ void check_thickness(const Polygons& mesh, const Shell& shell, double thickness)
   std::size_t turned = 0;
   for (std::size_t f = 0; f < shell.skin_faces(); ++f) {
     const std::uint32_t of_mesh = shell.source_face(f);
-    Vec3d normal = newell_normal(mesh.view(), of_mesh);
+    Vec3d normal = area_vector(mesh.view(), of_mesh);
     normal.normalize();
     const Vec3d on = mesh.positions[mesh.view().face(of_mesh)[0]];
     std::array<double, 2> least{1e9, 1e9}, most{-1e9, -1e9};
@@ -46,7 +47,7 @@ void check_thickness(const Polygons& mesh, const Shell& shell, double thickness)
         least[side] = std::min(least[side], height);
         most[side] = std::max(most[side], height);
       }
-      turned += newell_normal(shell.polygons.view(), face).dot(normal) * (side == 0 ? 1 : -1) <= 0;
+      turned += area_vector(shell.polygons.view(), face).dot(normal) * (side == 0 ? 1 : -1) <= 0;
       worst = std::max(worst, most[side] - least[side]);
     }
     worst = std::max(worst, std::abs(least[0] - least[1] - thickness));

@@ -170,7 +170,7 @@ void require_rules(const GivenNames& given, const std::vector<OptionRule>& rules
       require(relation != OptionRule::Relation::NeedsAnyOf || count > 0,
               fmt::format("{} needs {}", option, fmt::join(others, " or ")));
       require(relation != OptionRule::Relation::NeedsOneOf || count == 1,
-              fmt::format("{} needs one of {}", option, fmt::join(others, ", ")));
+              fmt::format("{} needs {} {}", option, count == 0 ? "one of" : "only one of", fmt::join(others, ", ")));
     }
 }
 

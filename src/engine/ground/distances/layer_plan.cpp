@@ -129,9 +129,9 @@ class LayerPlanner {
       if ((plan_.total ? stack.total : stack.last) >= wanted) return count;
       stack.total += stack.last *= *plan_.growth;
     }
-    throw InvalidInput(
-        fmt::format("{}: expected no more than {}, got a growth of {:g} with which they never come to {:g}", place(v),
-                    kMostLayers, *plan_.growth, plan_.total ? known.total : known.last));
+    throw InvalidInput(fmt::format(
+        "{}: expected a growth with which {} layers or less come from a first height of {:g} to {:g}, got {:.10g}",
+        place(v), kMostLayers, known.first, plan_.total ? known.total : known.last, *plan_.growth));
   }
 
   /// The growth of all layers at a vertex; NaN if it would have to be too large.
@@ -158,6 +158,10 @@ class LayerPlanner {
   }
 
   void require_growth(std::size_t v, double growth) const {
+    if (growth <= kMostGrowth && !std::isfinite(stack_of(count_, growth).total))
+      throw InvalidInput(
+          fmt::format("{}: expected fewer layers, or a growth below {:g}: {} of them are thicker than a number can say",
+                      place(v), growth, count_));
     if (growth <= kMostGrowth) return;
     throw InvalidInput(
         count_ == 1

@@ -15,15 +15,6 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Twice the area vector, relative to the first corner so that far-away polygons lose no digits.
-Vec3d area_vector(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon) {
-  Vec3d sum(0.0);
-  const Vec3d base = positions[polygon[0]];
-  for (std::size_t k = 2; k < polygon.size(); ++k)
-    sum += (positions[polygon[k - 1]] - base).cross(positions[polygon[k]] - base);
-  return sum;
-}
-
 bool fan_turns_one_way(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon, const Vec3d& area) {
   const Vec3d base = positions[polygon[0]];
   for (std::size_t k = 2; k < polygon.size(); ++k)
@@ -92,6 +83,14 @@ void split(std::span<const Vec3d> positions, std::span<const std::uint32_t> poly
 }
 
 }  // namespace
+
+Vec3d area_vector(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon) {
+  Vec3d sum(0.0);
+  const Vec3d base = positions[polygon[0]];
+  for (std::size_t k = 2; k < polygon.size(); ++k)
+    sum += (positions[polygon[k - 1]] - base).cross(positions[polygon[k]] - base);
+  return sum;
+}
 
 void triangulate(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon,
                  std::vector<Triangle>& triangles) {

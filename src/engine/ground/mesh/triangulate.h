@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,6 +10,12 @@
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
+
+/// Twice the area vector of a polygon, along its normal: relative to its first corner, so that far-away polygons lose
+/// no digits.
+Vec3d area_vector(std::span<const Vec3d> positions, std::span<const std::uint32_t> polygon);
+/// The same of a mesh's face.
+inline Vec3d area_vector(PolygonView mesh, std::size_t face) { return area_vector(mesh.positions, mesh.face(face)); }
 
 /// Splits one polygon into `size - 2` triangles over its own corners, appended to `triangles` as vertex indices
 /// in the polygon's own direction: the fan around its first corner, which is what most programs take a polygon for

@@ -210,17 +210,9 @@ std::size_t part_openings(const LayerCells& cells, const VolumeMesh& volume, std
   areas.reserve(sides.size());
   for (const auto& [c, k, opening] : sides) {
     const auto ring = cells.columns.ring(c);
-    BoundarySide& side =
-        areas.emplace_back(BoundarySide{{ring[k], ring[(k + 1) % ring.size()]}, Vec3d(0.0), {}, opening});
-    for (std::size_t layer = 0; layer < cells.layers; ++layer) {
-      std::array<Index, 4> face;
-      const Index size = cells.columns.column(cells.points, c, layer).side(k, face);
-      for (Index i = 0; i < size; ++i) side.points.push_back(volume.points[face[i]]);
-      for (Index i = 1; i + 1 < size; ++i)
-        side.area += (volume.points[face[i]] - volume.points[face[0]])
-                         .cross(volume.points[face[i + 1]] - volume.points[face[0]]) /
-                     2.0;
-    }
+    const Index a = ring[k], b = ring[(k + 1) % ring.size()];
+    const auto corner = [&](Index stack, std::size_t layer) { return volume.points[cells.points.at(stack, layer)]; };
+    areas.push_back({{a, b}, {corner(a, 0), corner(b, 0), corner(b, cells.layers), corner(a, cells.layers)}, opening});
   }
   const std::size_t count = part_by_planes(areas);
   for (std::size_t i = 0; i < sides.size(); ++i) sides[i].opening = areas[i].opening;

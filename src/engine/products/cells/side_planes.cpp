@@ -47,6 +47,7 @@ class OpeningPlanes {
     std::vector<Index> number(count);
     for (Index chain = 0; chain < count; ++chain) {
       const SidePlane plane = plane_of_chain(chain_of, chain);
+      if (plane.normal.lengthSqr() == 0) continue;  // sides without height, which have no faces
       if (!is_flat(chain_of, chain, plane)) return plane_of;
       const auto known = std::ranges::find_if(planes, [&](const SidePlane& other) {
         return (other.normal - plane.normal).length() < kSideOffPlane &&
@@ -72,7 +73,7 @@ class OpeningPlanes {
     for (const auto& [stack, around] : at_stack)
       for (std::size_t a = 0; a < around.size(); ++a)
         for (std::size_t b = a + 1; b < around.size(); ++b) {
-          const Vec3d &n = side(around[a]).area, &m = side(around[b]).area;
+          const Vec3d n = side(around[a]).area(), m = side(around[b]).area();
           if (n.dot(m) > kSameSide * n.length() * m.length()) joined.join(around[a], around[b]);
         }
     std::vector<Index> number(of_opening_.size(), kNone), chain_of;
@@ -88,7 +89,7 @@ class OpeningPlanes {
   void measure() {
     Vec3d lowest(std::numeric_limits<double>::infinity()), highest(-std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < of_opening_.size(); ++i)
-      for (const Vec3d& x : side(i).points) {
+      for (const Vec3d& x : side(i).corners) {
         lowest = openvdb::math::minComponent(lowest, x);
         highest = openvdb::math::maxComponent(highest, x);
       }
@@ -103,11 +104,11 @@ class OpeningPlanes {
 
   SidePlane plane_of_chain(const std::vector<Index>& chain_of, Index chain) const {
     SidePlane plane;
-    for_each_side(chain_of, chain, [&](const BoundarySide& each) { plane.normal += each.area; });
+    for_each_side(chain_of, chain, [&](const BoundarySide& each) { plane.normal += each.area(); });
     plane.normal.normalize(0.0);
     double sum = 0, count = 0;
     for_each_side(chain_of, chain, [&](const BoundarySide& each) {
-      for (const Vec3d& x : each.points) sum += x.dot(plane.normal), ++count;
+      for (const Vec3d& x : each.corners) sum += x.dot(plane.normal), ++count;
     });
     plane.place = sum / count;
     return plane;
@@ -116,7 +117,7 @@ class OpeningPlanes {
   bool is_flat(const std::vector<Index>& chain_of, Index chain, const SidePlane& plane) const {
     double off = 0;
     for_each_side(chain_of, chain, [&](const BoundarySide& each) {
-      for (const Vec3d& x : each.points) off = std::max(off, std::abs(x.dot(plane.normal) - plane.place));
+      for (const Vec3d& x : each.corners) off = std::max(off, std::abs(x.dot(plane.normal) - plane.place));
     });
     return off < kSideOffPlane * size_;
   }

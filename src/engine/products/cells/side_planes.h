@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "vdb_offset/numbers.h"
 
@@ -14,9 +13,11 @@ namespace vdb_offset {
 /// A side of a column of cells on the boundary, and the opening of the surface that it belongs to.
 struct BoundarySide {
   std::array<std::uint32_t, 2> stacks;  ///< At its two edges.
-  Vec3d area;                           ///< Out of the cells, as long as the area is large.
-  std::vector<Vec3d> points;            ///< All around its faces.
+  std::array<Vec3d, 4> corners;         ///< On the wall, then in the outermost layer: ccw seen from outside.
   std::uint32_t opening;
+
+  /// Out of the cells, twice as long as the area is large.
+  Vec3d area() const { return (corners[2] - corners[0]).cross(corners[3] - corners[1]); }
 };
 
 /// Parts openings that run over several planes, as that of half a pipe does over its two ends and the plane through its

@@ -23,9 +23,9 @@
 #include "ground/system/parallel.h"
 #include "products/fill/check_front.h"
 #include "products/fill/farfield.h"
-#include "products/fill/folds.h"
 #include "products/fill/front.h"
 #include "products/fill/openings.h"
+#include "products/fill/plane_lines.h"
 #include "products/volume/cell_quality.h"
 #include "products/volume/volume_faces.h"
 
@@ -97,14 +97,14 @@ class Filling {
     if (has_farfield) {
       // What is to be filled lies around these edges, not between them.
       for (OpenPlane& plane : planes)
-        if (!plane.is_folded) plane.normal = -plane.normal;
+        if (!plane.meets_others) plane.normal = -plane.normal;
       add_farfield(planes);
       planes = open_planes(volume_, open_edges(front_.triangles));
     }
     guessed_planes_ = guessed_planes(volume_.points, planes);
-    const Folds folds = find_folds(volume_.points, planes);
-    if (!folds.is_closed) throw FillFailed("fill: expected openings in planes that enclose a domain, got others");
-    close_along(folds, options_.growth, options_.longest.value_or(std::numeric_limits<double>::infinity()),
+    const PlaneLines lines = find_plane_lines(volume_.points, planes);
+    if (!lines.is_closed) throw FillFailed("fill: expected openings in planes that enclose a domain, got others");
+    close_along(lines, options_.growth, options_.longest.value_or(std::numeric_limits<double>::infinity()),
                 volume_.points, planes);
     for (std::size_t i = 0; i < planes.size(); ++i) {
       const std::string number = planes.size() > 1 ? fmt::format("_{}", i + 1) : "";

@@ -9,10 +9,11 @@
 #include <map>
 #include <set>
 
+#include "ground/mesh/triangulate.h"
 #include "ground/numbers/disjoint_sets.h"
 #include "ground/plane/plane_mesh.h"
 #include "products/fill/check_front.h"
-#include "products/fill/folds.h"
+#include "products/fill/plane_lines.h"
 
 namespace vdb_offset {
 namespace {
@@ -107,15 +108,10 @@ std::map<OpenEdge, Index> sides_at(const VolumeMesh& volume, std::span<const Ope
   return found;
 }
 
-/// Twice the area of a patch, out of the mesh.
+/// Twice the area vector of a patch, out of the mesh.
 Vec3d area_of(const VolumeMesh& volume, const BoundaryPatch& patch) {
   Vec3d sum(0.0);
-  for (std::size_t f = 0; f < patch.face_count(); ++f) {
-    const auto face = patch.face(f);
-    const Vec3d& first = volume.points[face[0]];
-    for (std::size_t k = 1; k + 1 < face.size(); ++k)
-      sum += (volume.points[face[k]] - first).cross(volume.points[face[k + 1]] - first);
-  }
+  for (std::size_t f = 0; f < patch.face_count(); ++f) sum += area_vector(volume.points, patch.face(f));
   return sum;
 }
 
@@ -129,7 +125,7 @@ class OpenPlaneFinder {
     std::vector<std::vector<OpenEdge>> on_known;  // loops over several planes without sides, as those of the farfield
     for (std::vector<OpenEdge>& loop : loops_of(edges)) {
       const std::map<Index, std::vector<OpenEdge>> by_side = parted_by_sides(loop);
-      if (by_side.size() > 1) add_folded(by_side);
+      if (by_side.size() > 1) add_parted(by_side);
       else if (is_flat(loop)) add(plane_of(volume_.points, std::move(loop)));
       else on_known.push_back(std::move(loop));
     }
@@ -174,11 +170,11 @@ class OpenPlaneFinder {
     }
   }
 
-  void add_folded(const std::map<Index, std::vector<OpenEdge>>& by_side) {
+  void add_parted(const std::map<Index, std::vector<OpenEdge>>& by_side) {
     for (const auto& [side, edges] : by_side) {
       if (side == kNone) continue;
       OpenPlane plane = plane_through(volume_.points, edges, area_of(volume_, volume_.patches[side]));
-      plane.is_folded = true;
+      plane.meets_others = true;
       add(std::move(plane));
     }
     if (const auto bare = by_side.find(kNone); bare != by_side.end()) add_to_known(bare->second);
@@ -212,13 +208,13 @@ class OpenPlaneFinder {
       return;
     }
     known->edges.insert(known->edges.end(), plane.edges.begin(), plane.edges.end());
-    if (plane.is_folded && !known->is_folded) known->is_folded = true, known->normal = plane.normal;
+    if (plane.meets_others && !known->meets_others) known->meets_others = true, known->normal = plane.normal;
   }
 
   /// The larger ones of several loops in a plane are around the others, and say what is outside.
   void turn_by_largest() {
     for (OpenPlane& plane : planes_)
-      if (!plane.is_folded && edge_extent(volume_.points, plane.edges).normal.dot(plane.normal) < 0)
+      if (!plane.meets_others && edge_extent(volume_.points, plane.edges).normal.dot(plane.normal) < 0)
         plane.normal = -plane.normal;
   }
 
@@ -357,11 +353,11 @@ bool is_enclosed_by(std::span<const Vec3d> points, std::span<const FrontTriangle
                     std::span<const OpenPlane> openings) {
   std::vector<Vec3d> all(points.begin(), points.end());
   std::vector<OpenPlane> planes(openings.begin(), openings.end());
-  const Folds folds = find_folds(points, openings);
-  if (!folds.is_closed) return false;
-  // One edge along each fold does, as areas alone count.
+  const PlaneLines lines = find_plane_lines(points, openings);
+  if (!lines.is_closed) return false;
+  // One edge along each line does, as areas alone count.
   constexpr double kCoarse = 1e6;
-  close_along(folds, kCoarse, std::numeric_limits<double>::infinity(), all, planes);
+  close_along(lines, kCoarse, std::numeric_limits<double>::infinity(), all, planes);
   std::vector<FrontTriangle> closed(front.begin(), front.end());
   for (const OpenPlane& plane : planes) {
     const auto middle = static_cast<Index>(all.size());

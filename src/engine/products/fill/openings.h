@@ -16,7 +16,7 @@ struct OpenPlane {
   Vec3d origin;
   Vec3d normal;  ///< Unit length.
   std::vector<std::array<std::uint32_t, 2>> edges;
-  bool is_folded = false;  ///< Its edges go on in other planes, and the normal leads out of what is to be filled.
+  bool meets_others = false;  ///< Its edges go on in other planes, and the normal leads out of what is to be filled.
 };
 
 /// Two axes across a normal of unit length, which make a right-handed frame with it; axes of coordinates if it is one.

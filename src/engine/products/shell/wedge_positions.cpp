@@ -15,6 +15,7 @@
 #include <queue>
 
 #include "ground/mesh/edge_sides.h"
+#include "ground/mesh/triangulate.h"
 #include "ground/system/assert.h"
 
 namespace vdb_offset {
@@ -148,7 +149,7 @@ class WedgePositionFinder {
   }
 
   Vec3d unit_normal(std::size_t f) const {
-    Vec3d normal = newell_normal(mesh_, f);
+    Vec3d normal = area_vector(mesh_, f);
     return normal.lengthSqr() > 0 ? normal.unit() : Vec3d(0.0);
   }
 
@@ -237,7 +238,7 @@ class WedgePositionFinder {
       for (std::uint32_t c = mesh_.face_begin[f]; c < mesh_.face_begin[f + 1]; ++c) {
         const std::uint32_t front = sides_.wedge[2 * c], back = sides_.wedge[2 * c + 1];
         if (!result_.is_near[front] && !result_.is_near[back]) continue;
-        if (normal.lengthSqr() == 0) normal = newell_normal(mesh_, f);
+        if (normal.lengthSqr() == 0) normal = area_vector(mesh_, f);
         if (!(normal.lengthSqr() > 0)) break;
         normal.normalize();
         const double weight = std::max(angle_at(f, c), kLeastAngle);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ground/mesh/triangulate.h"
 #include "vdb_offset/cells.h"
 
 namespace vdb_offset {
@@ -17,11 +18,7 @@ constexpr double kRoundingOff = 1e-6;
 /// The plane that all points of a patch lie in.
 std::optional<SymmetryPlane> plane_of_patch(const VolumeMesh& mesh, const BoundaryPatch& patch) {
   Vec3d area(0.0), lowest(std::numeric_limits<double>::infinity()), highest = -lowest;
-  for (std::size_t f = 0; f < patch.face_count(); ++f) {
-    const auto face = patch.face(f);
-    for (std::size_t k = 1; k + 1 < face.size(); ++k)
-      area += (mesh.points[face[k]] - mesh.points[face[0]]).cross(mesh.points[face[k + 1]] - mesh.points[face[0]]);
-  }
+  for (std::size_t f = 0; f < patch.face_count(); ++f) area += area_vector(mesh.points, patch.face(f));
   for (const auto p : patch.corners) {
     lowest = openvdb::math::minComponent(lowest, mesh.points[p]);
     highest = openvdb::math::maxComponent(highest, mesh.points[p]);

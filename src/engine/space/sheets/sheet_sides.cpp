@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "ground/mesh/edge_sides.h"
+#include "ground/mesh/triangulate.h"
 #include "ground/numbers/disjoint_sets.h"
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
@@ -179,7 +180,7 @@ class SideFinder {
     Vec3d axis = mesh_.positions[mesh_.corners[q]] - mesh_.positions[mesh_.corners[p]];
     axis.normalize();
     for (Leaf& leaf : leaves) {
-      leaf.into = newell_normal(mesh_, leaf.face).cross(leaf.forwards ? axis : -axis);
+      leaf.into = area_vector(mesh_, leaf.face).cross(leaf.forwards ? axis : -axis);
       leaf.into.normalize();
       leaf.angle = std::atan2(axis.dot(leaves[0].into.cross(leaf.into)), leaves[0].into.dot(leaf.into));
       if (leaf.angle < 0) leaf.angle += 2 * std::numbers::pi;
@@ -289,15 +290,6 @@ class VertexSheets {
 };
 
 }  // namespace
-
-Vec3d newell_normal(PolygonView mesh, std::size_t f) {
-  const auto face = mesh.face(f);
-  const Vec3d& origin = mesh.positions[face[0]];
-  Vec3d sum(0.0);
-  for (std::size_t k = 1; k + 1 < face.size(); ++k)
-    sum += (mesh.positions[face[k]] - origin).cross(mesh.positions[face[k + 1]] - origin);
-  return sum;
-}
 
 SheetSides find_sides(const Sheets& sheets) {
   VDB_OFFSET_ASSERT(sheets.welded_to.size() == sheets.mesh.positions.size());

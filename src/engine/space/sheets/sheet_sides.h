@@ -69,7 +69,4 @@ SheetSides find_sides(const Sheets& sheets);
 std::vector<std::uint8_t> find_junctions(const Surface& surface, PolygonView mesh,
                                          std::span<const std::uint8_t> only = {});
 
-/// The normal of a face times twice its area.
-Vec3d newell_normal(PolygonView mesh, std::size_t face);
-
 }  // namespace vdb_offset

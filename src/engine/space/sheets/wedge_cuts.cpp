@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "space/sheets/wedge_cuts.h"
+#include "ground/mesh/triangulate.h"
 
 #include <algorithm>
 #include <map>
@@ -74,7 +75,7 @@ class WedgeWalk {
     return static_cast<std::uint32_t>(next - mesh_.face_begin.begin()) - 1;
   }
   bool is_one_side(std::uint32_t a, std::uint32_t b) const {
-    Vec3d at_a = newell_normal(mesh_, face_of(a)), at_b = newell_normal(mesh_, face_of(b));
+    Vec3d at_a = area_vector(mesh_, face_of(a)), at_b = area_vector(mesh_, face_of(b));
     if (!(at_a.normalize() && at_b.normalize())) return true;
     return at_a.dot(at_b) * (a % 2 == b % 2 ? 1 : -1) > kOneSide;
   }

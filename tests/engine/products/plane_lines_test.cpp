@@ -106,7 +106,8 @@ void require_in_plane(const VolumeMesh& mesh, const BoundaryPatch& patch, double
 
 }  // namespace
 
-TEST_CASE("folds: half a pipe is closed by its ends and the plane through its axis, a quarter by two such planes") {
+TEST_CASE(
+    "plane lines: half a pipe is closed by its ends and the plane through its axis, a quarter by two such planes") {
   const bool is_half = GENERATE(true, false);
   const double angle = std::numbers::pi / (is_half ? 1 : 2);
   const int segments = is_half ? 16 : 8;
@@ -137,7 +138,7 @@ TEST_CASE("folds: half a pipe is closed by its ends and the plane through its ax
   }
 }
 
-TEST_CASE("folds: a quarter or an eighth of a body has a farfield that ends at its planes") {
+TEST_CASE("plane lines: a quarter or an eighth of a body has a farfield that ends at its planes") {
   const int planes = GENERATE(2, 3);
   const bool is_box = GENERATE(true, false);
   std::vector<FillDomain> seen;
@@ -169,7 +170,7 @@ TEST_CASE("folds: a quarter or an eighth of a body has a farfield that ends at i
   for (int k = 0; k < planes; ++k) CHECK(highest[k] - lowest[k] == Approx(is_box ? reach : 5));
 }
 
-TEST_CASE("folds: planes that follow from the faces beside a straight border alone are reported") {
+TEST_CASE("plane lines: planes that follow from the faces beside a straight border alone are reported") {
   Polygons wall = part_of_pipe(16, std::numbers::pi, 12, 3);
   CHECK(fill(wall, 0.1, fill_from_middle).report.guessed_planes.empty());
   for (Vec3d& x : wall.positions) x = {x[0], 0.8 * x[1] - 0.6 * x[2], 0.6 * x[1] + 0.8 * x[2]};
@@ -179,7 +180,7 @@ TEST_CASE("folds: planes that follow from the faces beside a straight border alo
     CHECK(std::abs(plane.normal.dot(Vec3d(0, -0.6, 0.8))) == Approx(std::cos(std::numbers::pi / 32)).epsilon(1e-6));
 }
 
-TEST_CASE("folds: a border that is not made of planes stays one opening, and is not covered") {
+TEST_CASE("plane lines: a border that is not made of planes stays one opening, and is not covered") {
   // A tube with slanting, wavy ends.
   Polygons wall;
   constexpr std::uint32_t kSegments = 24, kStacks = 6;

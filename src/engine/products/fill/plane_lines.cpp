@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "products/fill/folds.h"
+#include "products/fill/plane_lines.h"
 
 #include <fmt/format.h>
 
@@ -23,25 +23,26 @@ using Pair = std::array<Index, 2>;
 constexpr double kParallel = 1e-6;
 
 /// An end of a segment on a line.
-struct FoldEnd {
+struct PlaneLineEnd {
   Index point;
   double place;        // along the line
   bool leads_forward;  // what is to be filled lies in the line's direction
 };
 
-class FoldFinder {
+class PlaneLineFinder {
  public:
-  FoldFinder(std::span<const Vec3d> points, std::span<const OpenPlane> planes) : points_(points), planes_(planes) {}
+  PlaneLineFinder(std::span<const Vec3d> points, std::span<const OpenPlane> planes)
+      : points_(points), planes_(planes) {}
 
-  Folds run() {
+  PlaneLines run() {
     find_ends();
     for (auto& [pair, ends] : ends_of_) follow(pair, ends);
     join_corners();
-    return std::move(folds_);
+    return std::move(lines_);
   }
 
  private:
-  Vec3d place(Index p) const { return p < points_.size() ? points_[p] : folds_.corners[p - points_.size()]; }
+  Vec3d place(Index p) const { return p < points_.size() ? points_[p] : lines_.corners[p - points_.size()]; }
 
   /// The direction of the line in which two planes cross.
   Vec3d along(const Pair& pair) const {
@@ -78,18 +79,18 @@ class FoldFinder {
   }
 
   /// Pairs the ends on a line that face each other, and leads the others on to the next plane.
-  void follow(const Pair& pair, std::vector<FoldEnd>& ends) {
-    std::ranges::sort(ends, {}, [](const FoldEnd& end) { return std::pair(end.place, end.point); });
+  void follow(const Pair& pair, std::vector<PlaneLineEnd>& ends) {
+    std::ranges::sort(ends, {}, [](const PlaneLineEnd& end) { return std::pair(end.place, end.point); });
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const bool faces_next = ends[i].leads_forward && i + 1 < ends.size() && !ends[i + 1].leads_forward;
       if (faces_next) {
-        folds_.segments.push_back({pair, {ends[i].point, ends[i + 1].point}});
+        lines_.segments.push_back({pair, {ends[i].point, ends[i + 1].point}});
         ++i;
       } else lead_on(pair, ends[i]);
     }
   }
 
-  void lead_on(const Pair& pair, const FoldEnd& end) {
+  void lead_on(const Pair& pair, const PlaneLineEnd& end) {
     const Vec3d from = place(end.point), direction = along(pair) * (end.leads_forward ? 1.0 : -1.0);
     double least = std::numeric_limits<double>::infinity();
     Index third = kNone;
@@ -101,14 +102,14 @@ class FoldFinder {
       if (way > 0 && way < least) least = way, third = k;
     }
     if (third == kNone) {
-      folds_.is_closed = false;
+      lines_.is_closed = false;
       return;
     }
     std::array<Index, 3> key{pair[0], pair[1], third};
     std::ranges::sort(key);
-    const auto [corner, is_new] = corners_.try_emplace(key, static_cast<Index>(points_.size() + folds_.corners.size()));
-    if (is_new) folds_.corners.push_back(from + direction * least);
-    folds_.segments.push_back({pair, {end.point, corner->second}});
+    const auto [corner, is_new] = corners_.try_emplace(key, static_cast<Index>(points_.size() + lines_.corners.size()));
+    if (is_new) lines_.corners.push_back(from + direction * least);
+    lines_.segments.push_back({pair, {end.point, corner->second}});
     joined_.insert({corner->second, pair});
   }
 
@@ -121,18 +122,18 @@ class FoldFinder {
     for (auto& [pair, corners] : left) {
       const Vec3d direction = along(pair);
       std::ranges::sort(corners, {}, [&](Index corner) { return place(corner).dot(direction); });
-      if (corners.size() % 2 == 1) folds_.is_closed = false;
+      if (corners.size() % 2 == 1) lines_.is_closed = false;
       for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
-        folds_.segments.push_back({pair, {corners[i], corners[i + 1]}});
+        lines_.segments.push_back({pair, {corners[i], corners[i + 1]}});
     }
   }
 
   std::span<const Vec3d> points_;
   std::span<const OpenPlane> planes_;
-  std::map<Pair, std::vector<FoldEnd>> ends_of_;   // of each line
-  std::map<std::array<Index, 3>, Index> corners_;  // of three planes
-  std::set<std::pair<Index, Pair>> joined_;        // corners that have a segment on a line
-  Folds folds_;
+  std::map<Pair, std::vector<PlaneLineEnd>> ends_of_;  // of each line
+  std::map<std::array<Index, 3>, Index> corners_;      // of three planes
+  std::set<std::pair<Index, Pair>> joined_;            // corners that have a segment on a line
+  PlaneLines lines_;
 };
 
 /// Places between two ends, as shares of the way, for edges that are so long there, grow by a factor, and are not
@@ -159,16 +160,16 @@ std::vector<double> graded(double length, std::array<double, 2> sizes, double gr
 }
 
 /// Parts segments into edges, and adds these to the planes.
-class FoldCloser {
+class PlaneLineCloser {
  public:
-  FoldCloser(double growth, double longest, std::vector<Vec3d>& points, std::vector<OpenPlane>& planes)
+  PlaneLineCloser(double growth, double longest, std::vector<Vec3d>& points, std::vector<OpenPlane>& planes)
       : growth_(growth), longest_(longest), points_(points), planes_(planes) {
     for (const OpenPlane& plane : planes)
       for (const auto& [a, b] : plane.edges)
         for (const Index p : {a, b}) shorten(p, (points[a] - points[b]).length());
   }
 
-  void add(const FoldSegment& segment) {
+  void add(const LineSegment& segment) {
     const auto [from, to] = segment.ends;
     const Vec3d a = points_[from], b = points_[to];
     const double length = (b - a).length();
@@ -205,15 +206,15 @@ class FoldCloser {
 
 }  // namespace
 
-Folds find_folds(std::span<const Vec3d> points, std::span<const OpenPlane> planes) {
-  return FoldFinder(points, planes).run();
+PlaneLines find_plane_lines(std::span<const Vec3d> points, std::span<const OpenPlane> planes) {
+  return PlaneLineFinder(points, planes).run();
 }
 
-void close_along(const Folds& folds, double growth, double longest, std::vector<Vec3d>& points,
+void close_along(const PlaneLines& lines, double growth, double longest, std::vector<Vec3d>& points,
                  std::vector<OpenPlane>& planes) {
-  points.insert(points.end(), folds.corners.begin(), folds.corners.end());
-  FoldCloser closer(growth, longest, points, planes);
-  for (const FoldSegment& segment : folds.segments) closer.add(segment);
+  points.insert(points.end(), lines.corners.begin(), lines.corners.end());
+  PlaneLineCloser closer(growth, longest, points, planes);
+  for (const LineSegment& segment : lines.segments) closer.add(segment);
 }
 
 }  // namespace vdb_offset
