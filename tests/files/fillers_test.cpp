@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "products/volume/cell_quality.h"
+#include "products/volume/foam_measures.h"
 #include "products/volume/volume_faces.h"
 #include "support/places.h"
 #include "vdb_offset/offset.h"
@@ -41,6 +42,13 @@ TEST_CASE("Netgen and TetGen fill around a body, and inside of one", "[no_races]
   CHECK(report.tetrahedra > (is_outside ? 1000 : 100));
   CHECK(report.scaled_jacobian.least > (by_tetgen ? 0.02 : 0.1));
   CHECK(report.jump.least >= 1);
+}
+
+TEST_CASE("bent faces are parted so that no cell is dented beyond its middle", "[no_races]") {
+  if (!has_tetgen()) return;
+  const VolumeMesh mesh = fill(shapes::naca_wing("2412", 1, 1, 20, 4), 0.0047, io::tetgen_filler({}));
+  CHECK(std::ranges::count(mesh.cell_types, CellType::Polyhedron) > 100);
+  CHECK(measure_foam(mesh, VolumeFaces(mesh)).wrong_faces == 0);
 }
 
 TEST_CASE("two halves on one plane are filled around, and the plane is one of symmetry throughout", "[no_races]") {

@@ -214,7 +214,7 @@ class FigureCollector {
       if (is_of_fan(f)) figures.fan_cells += count;
     };
     for (const auto f : faces) {
-      figures.needles += facts_.cells[f] > 0 && is_needle(mesh_.face(f));
+      figures.needles += facts_.cells[f] > 0 && !is_of_fan(f) && is_needle(mesh_.face(f));
       add(f, 0, 1);
       add(f, 1, layers_.count() - 1);
     }
@@ -321,6 +321,7 @@ LayerReport report_layers(PolygonView mesh, const LayersResult& layers, const Wa
   report.points = quality.points;
   report.growth = growth_of(layers.heights);
   report.growing = layers.layer_statistics;
+  if (layers.periodic) report.periodic = layers.periodic->facts;
   report.turned_faces = facts.turned_faces;
   report.border_sides = facts.border_sides;
   report.unpaired_sides = facts.unpaired_sides;

@@ -119,6 +119,7 @@ TEST_CASE("fanned layers: a cube's edges get prisms along them, its corners tetr
   CHECK(grown.cells_of(CellType::Prism) == 12 * 2 + 2 * 8 * 6);
   CHECK(grown.cells_of(CellType::Hexahedron) == 3 * 6 + 2 * 12 * 2);
   CHECK(grown.report.all.fan_cells == 3 * (12 * 2 + 8 * 6));
+  CHECK(grown.report.all.needles == 0);  // faces of fans have no area on the wall
   CHECK(grown.report.all.coverage == 1);
   CHECK(grown.report.all.faces_by_role[static_cast<std::size_t>(FaceRole::Full)] == 6);
   CHECK(grown.report.all.wall_angle.most < 1e-6);
