@@ -15,6 +15,7 @@
 #include "vdb_offset/layers.h"
 #include "vdb_offset/mesh_facts.h"
 #include "vdb_offset/numbers.h"
+#include "vdb_offset/periodic.h"
 #include "vdb_offset/polygons.h"
 
 namespace vdb_offset {
@@ -49,6 +50,7 @@ struct VDB_OFFSET_API BoundaryPatch {
     Empty,     ///< The two ends of a plane mesh that is one cell thick.
     Inlet,
     Outlet,
+    Periodic,  ///< One of two, of which the mesh's motion takes the first to the second.
   };
   std::string name;  ///< No two patches have one name.
   Kind kind = Kind::Wall;
@@ -74,6 +76,9 @@ struct VDB_OFFSET_API VolumeMesh {
   std::vector<BoundaryPatch> patches;
   std::vector<VolumeField> point_fields, cell_fields;
   Vec3d normal{0.0};  ///< Of a plane mesh, unit length; zero of others.
+  /// Of a mesh that is one period of a shape: it takes each face of the first patch of kind Periodic to that with the
+  /// same number of the second one, whose corners run the other way round from the same first one.
+  std::optional<PeriodicMotion> motion;
 
   bool plane() const;
   std::size_t cell_count() const { return cell_types.size(); }
@@ -182,9 +187,10 @@ struct LayerCells;
 /// in that order, without the flat ones. Cells: layer by layer from the wall, in the order of faces. Patches: one for
 /// each of patch_names(), which may have no faces, "outer", and "sides" if the surface has an opening, or "sides_1",
 /// "sides_2"
-/// ... if it has several. Point fields: layer (0: wall), share, height (asked of the point, world units, signed),
-/// achieved, state (of VertexState). Cell fields: layer (from 1), face (of the input; exact up to 2^24), patch,
-/// scaled_jacobian, aspect_ratio. The result does not depend on the number of threads. Cost: O(cells).
+/// ... if it has several; over borders that a motion takes to each other "periodic_1" and "periodic_2". Point fields:
+/// layer (0: wall), share, height (asked of the point, world units, signed), achieved, state (of VertexState). Cell
+/// fields: layer (from 1), face (of the input; exact up to 2^24), patch, scaled_jacobian, aspect_ratio. The result does
+/// not depend on the number of threads. Cost: O(cells).
 ///
 /// \throw InvalidInput for faces that are no polygons, for layers that cannot be this mesh's, by their counts and
 /// positions, for more than 2^32 points or cells, and as require_names()
@@ -285,7 +291,8 @@ struct LayerReport {
   std::size_t points = 0;
   LayerGrowth growth;  ///< As asked for.
   LayerStatistics growing;
-  std::optional<FillReport> fill;        ///< If the rest of the domain was filled.
+  std::optional<FillReport> fill;  ///< If the rest of the domain was filled.
+  std::optional<PeriodicFacts> periodic;
   std::vector<PatchFacts> boundary;      ///< Of a mesh of cells that is written.
   std::optional<FoamQuality> foam;       ///< If a mesh has been written for OpenFOAM.
   std::size_t inverted_block_cells = 0;  ///< Cells of a structured block that was written, with a Jacobian not above 0.

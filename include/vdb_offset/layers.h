@@ -12,6 +12,7 @@
 
 #include "vdb_offset/api.h"
 #include "vdb_offset/options.h"
+#include "vdb_offset/periodic.h"
 #include "vdb_offset/polygons.h"
 #include "vdb_offset/result.h"
 
@@ -121,6 +122,8 @@ struct VDB_OFFSET_API LayersResult {
   /// layers; 2 or 3 if it is a quad that carries them as two triangles, on both sides of its diagonal from corner 0
   /// or 1. Empty: all faces carry layers.
   std::vector<std::uint8_t> carries;
+  /// Of grow_periodic_layers() alone.
+  std::optional<PeriodicPairs> periodic;
   KnownSides known;
   OffsetStatistics statistics;
   LayerStatistics layer_statistics;
@@ -140,6 +143,15 @@ struct VDB_OFFSET_API LayersResult {
 /// \throw InvalidInput as offset_several(), and for heights that do not rise, or are of both signs.
 VDB_OFFSET_API LayersResult grow_layers(PolygonView mesh, std::span<const Distances> heights,
                                         const OffsetOptions& options, CellRules rules = CellRules::AnySolver);
+
+/// grow_layers() on one period of a shape, whose other periods count as well: layers on borders are as they would be
+/// inside of the whole shape, and the motion takes those of one border to those of the other, to rounding. Obstacles
+/// stay where they are. Statistics of faces and of the grid are those of the mesh with its copies.
+/// \throw InvalidInput as grow_layers() and find_periodic_pairs(), and for an angle that a whole circle is no multiple
+/// of
+VDB_OFFSET_API LayersResult grow_periodic_layers(PolygonView mesh, std::span<const Distances> heights,
+                                                 const OffsetOptions& options, const PeriodicMotion& motion,
+                                                 CellRules rules = CellRules::AnySolver);
 
 /// Layers on a mesh whose sharp edges are opened into fans.
 struct VDB_OFFSET_API FannedLayers {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -49,6 +50,39 @@ TEST_CASE("--fill fills what layers leave, and --case writes what a solver needs
           "square.dat case/constant/polyMesh --layers 3 --first-height 0.02 --fill --case openfoam:case --viscosity 1")
           .code == 0);
   CHECK(text_of(shell.file("case/0/U")) == "mine");
+}
+
+TEST_CASE("--periodic couples the two borders of a period", "[command]") {
+  ShellCommand shell;
+  {
+    std::ofstream wall(shell.file("sector.obj"));
+    for (int i = 0; i <= 12; ++i)
+      for (int j = 0; j <= 6; ++j)
+        wall << "v " << i / 4.0 << ' ' << std::cos(std::acos(-1.0) / 18 * j) << ' '
+             << std::sin(std::acos(-1.0) / 18 * j) << '\n';
+    for (int i = 0; i < 12; ++i)
+      for (int j = 1; j <= 6; ++j)
+        wall << "f " << 7 * i + j << ' ' << 7 * i + j + 1 << ' ' << 7 * i + j + 8 << ' ' << 7 * i + j + 7 << '\n';
+  }
+  const std::string run = "sector.obj case/constant/polyMesh --layers 3 --total-thickness=-0.2 --fill ";
+  const Run made =
+      shell(run +
+            "--periodic rotate:1,0,0@5,0,0,360/6 --case openfoam:case --viscosity 0.1 --patch sides_1=in:inlet "
+            "--patch sides_2=out:outlet --patch periodic_1=here");
+  CHECK(made.code == 0);
+  CHECK_THAT(made.err, !Catch::Contains("--symmetry"));
+  const std::string boundary = text_of(shell.file("case/constant/polyMesh/boundary"));
+  for (const char* const text : {"cyclic;", "neighbourPatch  here;", "neighbourPatch  periodic_2;",
+                                 "transform       rotational;", "rotationAxis    (1 0 0);"})
+    CHECK_THAT(boundary, Catch::Contains(text));
+  CHECK_THAT(text_of(shell.file("case/0/p")), Catch::Contains("here { type cyclic; }"));
+  for (const char* const wrong : {"rotate:x", "rotate:x,0", "translate:0,0,0", "rotate:0,0,0,60", "shift:1,0,0"}) {
+    const Run refused = shell(run + "--periodic " + wrong);
+    CHECK(refused.code == 1);
+    CHECK_THAT(refused.err, Catch::Contains("--periodic: expected"));
+  }
+  CHECK(shell(run + "--periodic rotate:x,50").code == 2);
+  CHECK(shell(run + "--periodic rotate:x,60 --patch periodic_1=in:inlet").code != 0);
 }
 
 TEST_CASE("--case writes the options of SU2, with a marker for each patch", "[command]") {

@@ -80,8 +80,11 @@ void grow(const Job& job, Grown& grown) {
     grown.layers = std::move(fanned.layers);
   } else {
     const bool foam = io::volume_format_of(job.request.output) == io::VolumeFormat::Foam;
-    FannedLayers fanned = grow_fanned_layers(source.view(), job.distances, job.options, fan_angle_of(job.request),
-                                             foam ? CellRules::OpenFoam : CellRules::AnySolver);
+    const CellRules rules = foam ? CellRules::OpenFoam : CellRules::AnySolver;
+    FannedLayers fanned;
+    if (job.request.periodic)
+      fanned.layers = grow_periodic_layers(source.view(), job.distances, job.options, *job.request.periodic, rules);
+    else fanned = grow_fanned_layers(source.view(), job.distances, job.options, fan_angle_of(job.request), rules);
     grown.wall = std::move(fanned.wall);
     grown.layers = std::move(fanned.layers);
   }
@@ -176,6 +179,8 @@ void rename_patches(const Request& request, VolumeMesh& mesh) {
       for (const BoundaryPatch& each : mesh.patches) names.push_back(each.name);
       throw InvalidOption(fmt::format("--patch: expected one of {}, got '{}'", fmt::join(names, ", "), asked.patch));
     }
+    if (asked.kind && patch->kind == BoundaryPatch::Kind::Periodic)
+      throw InvalidOption(fmt::format("--patch: expected a name alone for {}, which is periodic", asked.patch));
     patch->name = asked.name;
     if (asked.kind) patch->kind = *asked.kind;
   }

@@ -71,6 +71,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"growth", layers.growth ? fmt::format("{}", *layers.growth) : ""},
           {"heights", layers.heights},
           {"fan-angle", request.layers ? fmt::format("{}", fan_angle_of(request)) : ""},
+          {"periodic", request.periodic_text},
           {"structured", layers.structured ? "true" : "false"},
           {"only", fmt::format("{}", fmt::join(request.only_texts, " "))},
           {"border", border},
@@ -204,7 +205,8 @@ void write_refinement(const Request& request, const RefinedSource& refined) {
 
 double fan_angle_of(const Request& request) {
   constexpr double kDefault = 60;
-  const bool by_default = io::volume_format_of(request.output) && request.corners != Corners::Miter;
+  const bool by_default =
+      io::volume_format_of(request.output) && request.corners != Corners::Miter && !request.periodic;
   return request.layers->fan_angle.value_or(by_default ? kDefault : 0);
 }
 

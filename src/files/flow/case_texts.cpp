@@ -37,6 +37,8 @@ const char* in_words(BoundaryPatch::Kind kind) {
       return "an outlet at pressure 0";
     case BoundaryPatch::Kind::Symmetry:
       return "a plane of symmetry";
+    case BoundaryPatch::Kind::Periodic:
+      return "one of two that the flow goes on through";
     case BoundaryPatch::Kind::Empty:
       return "the two ends of a plane flow";
     default:

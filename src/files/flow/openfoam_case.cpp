@@ -135,9 +135,10 @@ class OpenFoamCase {
   std::string conditions(Condition&& condition) const {
     std::string text = "boundaryField\n{\n";
     for (const CasePatch& patch : patches_) {
-      const std::string its = patch.kind == Kind::Symmetry ? "type symmetry;"
-                              : patch.kind == Kind::Empty  ? "type empty;"
-                                                           : condition(patch.kind);
+      const std::string its = patch.kind == Kind::Symmetry   ? "type symmetry;"
+                              : patch.kind == Kind::Empty    ? "type empty;"
+                              : patch.kind == Kind::Periodic ? "type cyclic;"
+                                                             : condition(patch.kind);
       text += fmt::format("    {} {{ {} }}\n", patch.name, its);
     }
     return text + "}\n";

@@ -59,6 +59,8 @@ const char* type_of(BoundaryPatch::Kind kind) {
       return "symmetry";
     case BoundaryPatch::Kind::Empty:
       return "empty";
+    case BoundaryPatch::Kind::Periodic:
+      return "cyclic";
     default:
       return "patch";
   }
@@ -139,11 +141,28 @@ class FoamWriter {
       const BoundaryPatch& patch = mesh_.patches[i];
       text += fmt::format(
           "    {}\n    {{\n        type            {};\n        nFaces          {};\n"
-          "        startFace       {};\n    }}\n",
-          names_[i], type_of(patch.kind), patch.face_count(), start);
+          "        startFace       {};\n{}    }}\n",
+          names_[i], type_of(patch.kind), patch.face_count(), start, coupling(i));
       start += patch.face_count();
     }
     return text + ")\n";
+  }
+
+  /// What OpenFOAM needs to know of one of two periodic patches.
+  std::string coupling(std::size_t i) const {
+    if (mesh_.patches[i].kind != BoundaryPatch::Kind::Periodic || !mesh_.motion) return "";
+    std::size_t other = 0;
+    while (other == i || mesh_.patches[other].kind != BoundaryPatch::Kind::Periodic) ++other;
+    const auto vector = [](const Vec3d& v) { return fmt::format("({:.17g} {:.17g} {:.17g})", v[0], v[1], v[2]); };
+    const PeriodicMotion& motion = *mesh_.motion;
+    const std::string transform =
+        motion.angle != 0 ? fmt::format(
+                                "        transform       rotational;\n        rotationAxis    {};\n"
+                                "        rotationCentre  {};\n",
+                                vector(motion.axis), vector(motion.point))
+                          : fmt::format("        transform       translational;\n        separationVector {};\n",
+                                        vector(i < other ? motion.shift : -motion.shift));
+    return fmt::format("        neighbourPatch  {};\n", names_[other]) + transform;
   }
 
   std::string sizes() const {

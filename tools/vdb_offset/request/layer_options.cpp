@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "request/command_line.h"
@@ -40,6 +41,68 @@ double parse_y_plus(const std::string& text) {
   require(number && std::isfinite(*number) && *number != 0,
           fmt::format("--y-plus: expected a finite number other than 0, got '{}'", text));
   return *number;
+}
+
+/// Numbers parted by commas.
+std::optional<std::vector<double>> numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto number = decimal<double>(text.substr(begin, end - begin));
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+std::optional<Vec3d> vector_of(std::string_view text) {
+  if (text == "x" || text == "y" || text == "z") {
+    Vec3d axis(0.0);
+    axis[text[0] - 'x'] = 1;
+    return axis;
+  }
+  const auto numbers = numbers_of(text);
+  if (!numbers || numbers->size() != 3) return std::nullopt;
+  return Vec3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+}
+
+/// Degrees, or a share of a circle, as 360/7.
+std::optional<double> angle_of(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  const auto above = decimal<double>(text.substr(0, slash));
+  const auto below = slash == std::string_view::npos ? 1.0 : decimal<double>(text.substr(slash + 1));
+  if (!above || !below || *above == 0 || *below == 0 || !std::isfinite(*above / *below)) return std::nullopt;
+  return *above / *below;
+}
+
+/// `rotate:AXIS,ANGLE`, with `@X,Y,Z` behind the axis where it is not through the origin, or `translate:X,Y,Z`.
+PeriodicMotion parse_motion(const std::string& text) {
+  const auto fail = [&]() -> UsageError {
+    return UsageError(fmt::format(
+        "--periodic: expected 'rotate:x,30' (or y, z, or A,B,C, and @X,Y,Z before the angle) or 'translate:X,Y,Z', got "
+        "'{}'",
+        text));
+  };
+  PeriodicMotion motion;
+  const std::string_view given = text, turn = "rotate:", shift = "translate:";
+  if (given.starts_with(shift)) {
+    const auto way = vector_of(given.substr(shift.size()));
+    if (!way || !(way->length() > 0)) throw fail();
+    motion.shift = *way;
+    return motion;
+  }
+  if (!given.starts_with(turn) || given.rfind(',') == std::string_view::npos) throw fail();
+  const std::string_view line = given.substr(turn.size(), given.rfind(',') - turn.size());
+  const std::size_t at = line.find('@');
+  const auto axis = vector_of(line.substr(0, at)),
+             point = at == std::string_view::npos ? std::optional(Vec3d(0.0)) : vector_of(line.substr(at + 1));
+  const auto angle = angle_of(given.substr(given.rfind(',') + 1));
+  if (!axis || !(axis->length() > 0) || !point || !angle) throw fail();
+  motion.axis = axis->unit();
+  motion.point = *point;
+  motion.angle = *angle;
+  return motion;
 }
 
 /// Where a preset says how many layers there are and how they grow, and the line gives two lengths, one of what the
@@ -133,6 +196,15 @@ void declare_layers(CommandLine& line, Draft& draft) {
       "Open edges that bend by more than A degrees into fans of cells, no two sides of which are farther apart; "
       "5 to 180, or 0 for none [60 for files of cells without --corners miter, else 0]",
       layers.fan_angle, parse_fan_angle);
+  line.option(
+      "--periodic", "MOTION",
+      "The mesh is one period of a shape: layers on its borders are those of the whole shape, and alike; MOTION takes "
+      "one border to the other: 'rotate:AXIS,ANGLE' or 'translate:X,Y,Z'; AXIS is x, y, z or A,B,C, with @X,Y,Z behind "
+      "it for a point that it goes through; ANGLE is in degrees, or as 360/7; without fans",
+      request.periodic_text, [&request](const std::string& text) {
+        request.periodic = parse_motion(text);
+        return text;
+      });
   line.flag("--structured",
             "With --layers: the mesh is a grid of quads, and OUTPUT a block of hexahedra: .vts, or Plot3D's .xyz",
             layers.structured);

@@ -190,8 +190,9 @@ void require_together(const GivenNames& given) {
        NeedsAnyOf,
        {"--layers"}},
       {{"--y-plus"}, Excludes, {"--first-height"}},
-      {{"--structured", "--fan-angle"}, NeedsAnyOf, {"--layers", "--heights"}},
+      {{"--structured", "--fan-angle", "--periodic"}, NeedsAnyOf, {"--layers", "--heights"}},
       {{"--structured"}, Excludes, {"--fan-angle", "--fill"}},
+      {{"--periodic"}, Excludes, {"--fan-angle", "--structured"}},
       {{"--fill", "--patch"}, NeedsAnyOf, {"--layers", "--heights"}},
       {{"--case"}, NeedsAnyOf, {"--fill"}},
       {{"--case", "--y-plus"}, NeedsOneOf, {"--viscosity", "--reynolds"}},
@@ -250,10 +251,10 @@ void require_miters(const Request& request) {
 void require_options_for(const Request& request, bool curves, const char* meshes) {
   if (const char* const of_curves = first_given(request, {"--close", "--flatten"}); of_curves && !curves)
     throw UsageError(fmt::format("{}: expected curves, as this is not for meshes", of_curves));
-  const char* of_meshes =
-      first_given(request, {"--only", "--border", "--distance-of", "--symmetry", "--obstacle", "--shell", "--mode iso",
-                            "--tolerance", "--corners arc", "--orient fix-direction-only", "--orient fix-cavities",
-                            "--deflection", "--fit", "--taper", "--fill-with", "--fill-quads", "--caps"});
+  const char* of_meshes = first_given(
+      request, {"--only", "--border", "--distance-of", "--symmetry", "--periodic", "--obstacle", "--shell",
+                "--mode iso", "--tolerance", "--corners arc", "--orient fix-direction-only", "--orient fix-cavities",
+                "--deflection", "--fit", "--taper", "--fill-with", "--fill-quads", "--caps"});
   if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";
   if (of_meshes && curves)
     throw UsageError(fmt::format("{}: expected {}, as this is not for curves", of_meshes, meshes));

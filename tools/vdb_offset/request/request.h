@@ -149,6 +149,8 @@ struct Request {
   std::vector<std::string> obstacles;
   GivenDistance clearance;
   SymmetryOptions symmetry;
+  std::optional<PeriodicMotion> periodic;
+  std::string periodic_text;
 
   // Without a value, a scene's own counts.
   std::optional<Border> border;

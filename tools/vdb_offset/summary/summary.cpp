@@ -356,6 +356,18 @@ std::string growth_in_words(const Job& job, const LayerReport& report) {
   return fmt::format(" (growth {})", in_words(report.growth));
 }
 
+/// Whether a mesh may be one period of a shape that has not been called so.
+void add_periods(const Job& job, const LayersResult& result, Remarks& remarks) {
+  if (result.periodic || job.curves()) return;
+  const auto turn = likely_turn(job.source.view());
+  if (!turn) return;
+  const char axis = "xyz"[turn->axis[0] == 1 ? 0 : turn->axis[1] == 1 ? 1 : 2];
+  remarks.add(Gravity::Input,
+              fmt::format("one border is the other one, turned by {:.6g} degrees about {}. If the mesh is "
+                          "one period of a shape: --periodic rotate:{},{:.10g}",
+                          turn->angle, axis, axis, turn->angle));
+}
+
 }  // namespace
 
 Summary summary_of(const Job& job, const LayersResult& result, const LayerReport& report) {
@@ -395,6 +407,7 @@ Summary summary_of(const Job& job, const LayersResult& result, const LayerReport
   if (statistics.obstacles) add_obstacles(*statistics.obstacles, job.options.clearance, lengths, remarks);
   add_faces(job, statistics, remarks);
   add_layers_corners(job, statistics.miters, remarks);
+  add_periods(job, result, remarks);
   add_input(job, statistics, result.heights.back(), remarks);
   return made;
 }

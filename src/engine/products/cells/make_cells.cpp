@@ -10,6 +10,7 @@
 #include "ground/numbers/disjoint_sets.h"
 #include "vdb_offset/cells.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -17,12 +18,15 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <span>
 #include <string>
 
 #include "ground/system/assert.h"
 #include "ground/system/parallel.h"
 #include "products/cells/side_planes.h"
 #include "products/layers/column_cells.h"
+#include "products/volume/free_name.h"
+#include "products/volume/periodic_patches.h"
 
 namespace vdb_offset {
 namespace {
@@ -161,16 +165,55 @@ struct OpenSide {
   Index opening = 0;
 };
 
-/// Finds the sides on the boundary, and the opening of the surface that each belongs to: sides with a common point
-/// belong to one. Openings are numbered in the order of columns. Returns their number.
-std::size_t find_openings(const LayerPoints& points, const NumberedColumns& columns, std::vector<OpenSide>& sides) {
-  DisjointSets joined(points.stacks());
+/// The stacks at both edges of a side.
+std::array<Index, 2> stacks_of(const NumberedColumns& columns, const OpenSide& side) {
+  const auto ring = columns.ring(side.column);
+  return {ring[side.corner], ring[(side.corner + 1) % ring.size()]};
+}
+
+std::vector<OpenSide> find_open_sides(const NumberedColumns& columns) {
+  std::vector<OpenSide> sides;
   for (std::size_t c = 0; c < columns.count(); ++c)
-    for (Index k = 0; k < columns.ring(c).size(); ++k) {
-      if (columns.open[columns.begin[c] + k] == 0) continue;
-      sides.push_back({c, k});
-      joined.join(columns.ring(c)[k], columns.ring(c)[(k + 1) % columns.ring(c).size()]);
-    }
+    for (Index k = 0; k < columns.ring(c).size(); ++k)
+      if (columns.open[columns.begin[c] + k] != 0) sides.push_back({c, k});
+  return sides;
+}
+
+/// Takes those sides out that a motion takes to others, and these, and returns both.
+std::array<std::vector<OpenSide>, 2> take_periodic(const PeriodicPairs& pairs, const LayerCells& cells,
+                                                   std::vector<OpenSide>& sides) {
+  using Ends = std::array<Index, 2>;
+  const auto ends_of = [&](const OpenSide& side) {
+    const auto [a, b] = stacks_of(cells.columns, side);
+    return Ends{cells.points.vertex[a], cells.points.vertex[b]};
+  };
+  std::set<Ends> all, images;
+  for (const OpenSide& side : sides) all.insert(ends_of(side));
+  const auto image_of = [&](const Ends& ends) { return Ends{pairs.image[ends[1]], pairs.image[ends[0]]}; };
+  std::array<std::vector<OpenSide>, 2> taken;
+  std::erase_if(sides, [&](const OpenSide& side) {
+    const Ends image = image_of(ends_of(side));
+    if (image[0] == kNone || image[1] == kNone || !all.contains(image)) return false;
+    images.insert(image);
+    taken[0].push_back(side);
+    return true;
+  });
+  std::erase_if(sides, [&](const OpenSide& side) {
+    if (!images.contains(ends_of(side))) return false;
+    taken[1].push_back(side);
+    return true;
+  });
+  return taken;
+}
+
+/// Finds the opening of the surface that each side belongs to: sides with a common point belong to one. Openings are
+/// numbered in the order of columns.
+void find_openings(const LayerPoints& points, const NumberedColumns& columns, std::vector<OpenSide>& sides) {
+  DisjointSets joined(points.stacks());
+  for (const OpenSide& side : sides) {
+    const auto [a, b] = stacks_of(columns, side);
+    joined.join(a, b);
+  }
   std::vector<Index> number(points.stacks(), kNone);
   std::size_t count = 0;
   for (OpenSide& side : sides) {
@@ -178,7 +221,6 @@ std::size_t find_openings(const LayerPoints& points, const NumberedColumns& colu
     if (opening == kNone) opening = static_cast<Index>(count++);
     side.opening = opening;
   }
-  return count;
 }
 
 /// Joins all openings but the largest few into the last one. Returns the number of openings.
@@ -208,29 +250,19 @@ std::string side_name(std::size_t openings, std::set<std::string>& taken) {
 std::size_t part_openings(const LayerCells& cells, const VolumeMesh& volume, std::vector<OpenSide>& sides) {
   std::vector<BoundarySide> areas;
   areas.reserve(sides.size());
-  for (const auto& [c, k, opening] : sides) {
-    const auto ring = cells.columns.ring(c);
-    const Index a = ring[k], b = ring[(k + 1) % ring.size()];
+  for (const OpenSide& side : sides) {
+    const auto [a, b] = stacks_of(cells.columns, side);
     const auto corner = [&](Index stack, std::size_t layer) { return volume.points[cells.points.at(stack, layer)]; };
-    areas.push_back({{a, b}, {corner(a, 0), corner(b, 0), corner(b, cells.layers), corner(a, cells.layers)}, opening});
+    areas.push_back(
+        {{a, b}, {corner(a, 0), corner(b, 0), corner(b, cells.layers), corner(a, cells.layers)}, side.opening});
   }
   const std::size_t count = part_by_planes(areas);
   for (std::size_t i = 0; i < sides.size(); ++i) sides[i].opening = areas[i].opening;
   return count;
 }
 
-void add_sides(const LayerCells& cells, VolumeMesh& volume) {
-  std::vector<OpenSide> sides;
-  find_openings(cells.points, cells.columns, sides);
-  const std::size_t openings = keep_largest(part_openings(cells, volume, sides), sides);
-  std::set<std::string> taken;
-  for (const BoundaryPatch& patch : volume.patches) taken.insert(patch.name);
-  const std::size_t first = volume.patches.size();
-  for (std::size_t i = 0; i < openings; ++i) {
-    BoundaryPatch& patch = volume.patches.emplace_back();
-    patch.name = side_name(openings, taken);
-    patch.kind = BoundaryPatch::Kind::Side;
-  }
+/// Adds the faces of sides to patches: opening 0 to the patch `first`, and so on.
+void add_side_faces(const LayerCells& cells, std::span<const OpenSide> sides, std::size_t first, VolumeMesh& volume) {
   for (std::size_t layer = 0; layer < cells.layers; ++layer)
     for (const auto& [c, k, opening] : sides) {
       const ColumnCells column = cells.columns.column(cells.points, c, layer);
@@ -241,10 +273,38 @@ void add_sides(const LayerCells& cells, VolumeMesh& volume) {
     }
 }
 
-void add_patches(const LayerCells& cells, const WallNames& names, VolumeMesh& volume) {
+void add_periodic(const PeriodicPairs& pairs, const LayerCells& cells, std::vector<OpenSide>& sides,
+                  VolumeMesh& volume) {
+  const auto taken = take_periodic(pairs, cells, sides);
+  if (taken[0].empty()) return;
+  for (const std::vector<OpenSide>& each : taken) {
+    const std::string name = fmt::format("periodic_{}", &each - taken.data() + 1);
+    volume.patches.push_back({.name = free_name(volume, name), .kind = BoundaryPatch::Kind::Periodic});
+    add_side_faces(cells, each, volume.patches.size() - 1, volume);
+  }
+  volume.motion = pairs.motion;
+}
+
+void add_sides(const LayerCells& cells, const LayersResult& layers, VolumeMesh& volume) {
+  std::vector<OpenSide> sides = find_open_sides(cells.columns);
+  if (layers.periodic) add_periodic(*layers.periodic, cells, sides, volume);
+  find_openings(cells.points, cells.columns, sides);
+  const std::size_t openings = sides.empty() ? 0 : keep_largest(part_openings(cells, volume, sides), sides);
+  std::set<std::string> taken;
+  for (const BoundaryPatch& patch : volume.patches) taken.insert(patch.name);
+  const std::size_t first = volume.patches.size();
+  for (std::size_t i = 0; i < openings; ++i) {
+    BoundaryPatch& patch = volume.patches.emplace_back();
+    patch.name = side_name(openings, taken);
+    patch.kind = BoundaryPatch::Kind::Side;
+  }
+  add_side_faces(cells, sides, first, volume);
+}
+
+void add_patches(const LayerCells& cells, const LayersResult& layers, const WallNames& names, VolumeMesh& volume) {
   add_walls(cells, names, volume);
   add_outer(cells, volume);
-  add_sides(cells, volume);
+  add_sides(cells, layers, volume);
 }
 
 }  // namespace
@@ -259,8 +319,9 @@ VolumeMesh make_cells(const LayersResult& layers, const LayerCells& cells, const
   fill_middles(cells, volume);
   tbb::parallel_invoke([&] { fill_cells(cells, names, volume); },
                        [&] {
-                         if (layers.count() > 0) add_patches(cells, names, volume);
+                         if (layers.count() > 0) add_patches(cells, layers, names, volume);
                        });
+  match_periodic_patches(volume);
   volume.cell_fields.push_back({"scaled_jacobian", std::move(quality.scaled_jacobian)});
   volume.cell_fields.push_back({"aspect_ratio", std::move(quality.aspect_ratio)});
   return volume;

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "ground/mesh/exact_predicates.h"
@@ -27,6 +28,8 @@
 #include "products/fill/openings.h"
 #include "products/fill/plane_lines.h"
 #include "products/volume/cell_quality.h"
+#include "products/volume/free_name.h"
+#include "products/volume/periodic_patches.h"
 #include "products/volume/volume_faces.h"
 
 namespace vdb_offset {
@@ -78,6 +81,7 @@ class Filling {
     add_fields();
     if (report) make_report(*report);
     part_cells(front_.parted, volume_);
+    match_periodic_patches(volume_);
     return std::move(volume_);
   }
 
@@ -104,15 +108,28 @@ class Filling {
     guessed_planes_ = guessed_planes(volume_.points, planes);
     const PlaneLines lines = find_plane_lines(volume_.points, planes);
     if (!lines.is_closed) throw FillFailed("fill: expected openings in planes that enclose a domain, got others");
+    const auto [first, second] = periodic_planes(planes);
     close_along(lines, options_.growth, options_.longest.value_or(std::numeric_limits<double>::infinity()),
-                volume_.points, planes);
+                volume_.points, planes,
+                second == nullptr ? std::map<Index, Index>() : periodic_images(volume_, *first, *second));
     for (std::size_t i = 0; i < planes.size(); ++i) {
       const std::string number = planes.size() > 1 ? fmt::format("_{}", i + 1) : "";
-      const std::string name = free_name((has_farfield ? "symmetry" : "cap") + number);
-      cover(planes[i], options_, name, has_farfield, front_, volume_);
+      const std::string name = free_name(volume_, (has_farfield ? "symmetry" : "cap") + number);
+      if (&planes[i] != second) cover(planes[i], options_, name, has_farfield, front_, volume_);
     }
+    if (second != nullptr) cover_as(*first, *second, front_, volume_);
     if (!open_edges(front_.triangles).empty())
       throw FillFailed("fill: expected openings that can be covered, got others");
+  }
+
+  /// The planes of the first and of the second periodic patch, if there are both.
+  static std::array<const OpenPlane*, 2> periodic_planes(std::span<const OpenPlane> planes) {
+    std::array<const OpenPlane*, 2> both{};
+    for (const OpenPlane& plane : planes)
+      if (plane.patch != kNone) both[both[0] == nullptr ? 0 : 1] = &plane;
+    if (both[1] == nullptr) return {};
+    if (both[1]->patch < both[0]->patch) std::swap(both[0], both[1]);
+    return both;
   }
 
   void add_farfield(std::span<const OpenPlane> planes) {
@@ -126,19 +143,9 @@ class Filling {
       const auto face = farfield.view().face(f);
       front_.triangles.push_back({{first + face[0], first + face[1], first + face[2]}, kNone, patch});
     }
-    volume_.patches.push_back({.name = free_name("farfield"), .kind = BoundaryPatch::Kind::Outer});
+    volume_.patches.push_back({.name = free_name(volume_, "farfield"), .kind = BoundaryPatch::Kind::Outer});
     if (planes.empty() && !open_edges(std::span(front_.triangles).subspan(front_size_)).empty())
       throw InvalidInput("farfield: expected a closed surface, got one with open edges");
-  }
-
-  /// A name that no patch has.
-  std::string free_name(const std::string& wanted) const {
-    const auto is_taken = [&](const std::string& name) {
-      return std::ranges::any_of(volume_.patches, [&](const BoundaryPatch& patch) { return patch.name == name; });
-    };
-    std::string name = wanted;
-    for (int n = 2; is_taken(name); ++n) name = fmt::format("{}_{}", wanted, n);
-    return name;
   }
 
   FillDomain make_domain() {

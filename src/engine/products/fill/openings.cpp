@@ -14,6 +14,7 @@
 #include "ground/plane/plane_mesh.h"
 #include "products/fill/check_front.h"
 #include "products/fill/plane_lines.h"
+#include "products/volume/free_name.h"
 
 namespace vdb_offset {
 namespace {
@@ -24,6 +25,8 @@ using OpenEdge = std::array<Index, 2>;
 // How far an opening's edges may be off their plane, as a share of its size. Flat ones are off by rounding. Beyond,
 // flat caps would lean visibly towards the layers' sides.
 constexpr double kOffPlane = 1e-2;
+// The same of periodic openings, which both lean alike: rails between two periods lie in no plane. Not measured.
+constexpr double kPeriodicOffPlane = 0.3;
 // Normals that are to be along an axis have at least this component. Reasoned: openings' edges are this flat.
 constexpr double kAcross = 0.999;
 // Openings are in one plane if these are so near each other, as a share of the larger one's size.
@@ -54,7 +57,8 @@ EdgeExtent edge_extent(std::span<const Vec3d> points, std::span<const OpenEdge> 
 
 /// A plane through edges, with a normal of any length. Where they are all at one place along an axis, it is exactly at
 /// right angles to that.
-OpenPlane plane_through(std::span<const Vec3d> points, std::vector<OpenEdge> edges, const Vec3d& normal) {
+OpenPlane plane_through(std::span<const Vec3d> points, std::vector<OpenEdge> edges, const Vec3d& normal,
+                        double most_off = kOffPlane) {
   const EdgeExtent extent = edge_extent(points, edges);
   OpenPlane plane{extent.middle, normal, std::move(edges)};
   plane.normal.normalize(0.0);
@@ -71,7 +75,7 @@ OpenPlane plane_through(std::span<const Vec3d> points, std::vector<OpenEdge> edg
   }
   double off = 0;
   for (const auto& [a, b] : plane.edges) off = std::max(off, std::abs((points[a] - plane.origin).dot(plane.normal)));
-  if (off > kOffPlane * extent.size)
+  if (off > most_off * extent.size)
     throw InvalidInput(fmt::format(
         "fill: expected flat openings, got one around ({:.6g}, {:.6g}, {:.6g}) whose edges are up to {:.3g} off "
         "a plane (cut it straight, or close it)",
@@ -80,13 +84,13 @@ OpenPlane plane_through(std::span<const Vec3d> points, std::vector<OpenEdge> edg
 }
 
 /// The plane that edges around an area lie in.
-OpenPlane plane_of(std::span<const Vec3d> points, std::vector<OpenEdge> edges) {
+OpenPlane plane_of(std::span<const Vec3d> points, std::vector<OpenEdge> edges, double most_off = kOffPlane) {
   const EdgeExtent extent = edge_extent(points, edges);
   if (!(extent.normal.length() > kOneOpeningPlane * extent.size * extent.size))
     throw InvalidInput(
         fmt::format("fill: expected openings around an area, got one without at ({:.6g}, {:.6g}, {:.6g})",
                     extent.middle[0], extent.middle[1], extent.middle[2]));
-  return plane_through(points, std::move(edges), extent.normal);
+  return plane_through(points, std::move(edges), extent.normal, most_off);
 }
 
 /// The patches of sides, by the edges of their faces.
@@ -97,7 +101,7 @@ std::map<OpenEdge, Index> sides_at(const VolumeMesh& volume, std::span<const Ope
   std::map<OpenEdge, Index> found;
   for (Index i = 0; i < volume.patches.size(); ++i) {
     const BoundaryPatch& patch = volume.patches[i];
-    if (patch.kind != BoundaryPatch::Kind::Side) continue;
+    if (patch.kind != BoundaryPatch::Kind::Side && patch.kind != BoundaryPatch::Kind::Periodic) continue;
     for (std::size_t f = 0; f < patch.face_count(); ++f) {
       const auto face = patch.face(f);
       for (std::size_t k = 0; k < face.size(); ++k)
@@ -126,11 +130,14 @@ class OpenPlaneFinder {
     for (std::vector<OpenEdge>& loop : loops_of(edges)) {
       const std::map<Index, std::vector<OpenEdge>> by_side = parted_by_sides(loop);
       if (by_side.size() > 1) add_parted(by_side);
+      else if (const Index side = by_side.empty() ? kNone : by_side.begin()->first; is_periodic(side))
+        add_periodic(plane_of(volume_.points, std::move(loop), kPeriodicOffPlane), side);
       else if (is_flat(loop)) add(plane_of(volume_.points, std::move(loop)));
       else on_known.push_back(std::move(loop));
     }
     for (const auto& loop : on_known) add_to_known(loop);
     turn_by_largest();
+    if (volume_.motion) settle_periodic();
     return std::move(planes_);
   }
 
@@ -173,9 +180,11 @@ class OpenPlaneFinder {
   void add_parted(const std::map<Index, std::vector<OpenEdge>>& by_side) {
     for (const auto& [side, edges] : by_side) {
       if (side == kNone) continue;
-      OpenPlane plane = plane_through(volume_.points, edges, area_of(volume_, volume_.patches[side]));
+      OpenPlane plane = plane_through(volume_.points, edges, area_of(volume_, volume_.patches[side]),
+                                      is_periodic(side) ? kPeriodicOffPlane : kOffPlane);
       plane.meets_others = true;
-      add(std::move(plane));
+      if (is_periodic(side)) add_periodic(std::move(plane), side);
+      else add(std::move(plane));
     }
     if (const auto bare = by_side.find(kNone); bare != by_side.end()) add_to_known(bare->second);
   }
@@ -195,14 +204,58 @@ class OpenPlaneFinder {
     }
   }
 
+  bool are_one(const OpenPlane& plane, const OpenPlane& other) const {
+    const double size =
+        std::max(edge_extent(volume_.points, plane.edges).size, edge_extent(volume_.points, other.edges).size);
+    return plane.normal.cross(other.normal).length() < kOneOpeningPlane &&
+           std::abs((plane.origin - other.origin).dot(other.normal)) < kOneOpeningPlane * size;
+  }
+
+  bool is_periodic(Index patch) const {
+    return patch != kNone && volume_.patches[patch].kind == BoundaryPatch::Kind::Periodic;
+  }
+
+  /// Adds a plane of a periodic patch, which others in one plane with it belong to.
+  void add_periodic(OpenPlane plane, Index patch) {
+    plane.patch = patch;
+    auto known = std::ranges::find(planes_, patch, &OpenPlane::patch);
+    if (known == planes_.end())
+      known = std::ranges::find_if(
+          planes_, [&](const OpenPlane& other) { return other.patch == kNone && are_one(plane, other); });
+    if (known == planes_.end()) return planes_.push_back(std::move(plane));
+    known->patch = patch;
+    known->edges.insert(known->edges.end(), plane.edges.begin(), plane.edges.end());
+  }
+
+  /// Makes the plane of the second periodic patch what the motion makes of that of the first one, which has the axis of
+  /// a turn in it if it is near enough to that.
+  void settle_periodic() {
+    std::array<OpenPlane*, 2> both{};
+    for (OpenPlane& plane : planes_)
+      if (plane.patch != kNone) both[both[0] == nullptr ? 0 : 1] = &plane;
+    if (both[1] == nullptr) return;
+    if (both[1]->patch < both[0]->patch) std::swap(both[0], both[1]);
+    const PeriodicMotion& motion = *volume_.motion;
+    if (motion.angle != 0) put_through_axis(motion, *both[0]);
+    both[1]->origin = motion(both[0]->origin);
+    both[1]->normal = -motion.turned(both[0]->normal);
+  }
+
+  void put_through_axis(const PeriodicMotion& motion, OpenPlane& plane) const {
+    Vec3d axis = motion.axis;
+    axis.normalize(0.0);
+    const Vec3d out = plane.origin - motion.point, radial = out - axis * axis.dot(out);
+    Vec3d normal = plane.normal - axis * axis.dot(plane.normal);
+    normal -= radial * (radial.dot(normal) / radial.lengthSqr());
+    if (!normal.normalize(0.0)) return;
+    const double most = kPeriodicOffPlane * edge_extent(volume_.points, plane.edges).size;
+    for (const OpenEdge& edge : plane.edges)
+      if (std::abs((volume_.points[edge[0]] - motion.point).dot(normal)) > most) return;
+    plane.normal = normal;
+  }
+
   void add(OpenPlane plane) {
-    const auto is_same = [&](const OpenPlane& other) {
-      const double size =
-          std::max(edge_extent(volume_.points, plane.edges).size, edge_extent(volume_.points, other.edges).size);
-      return plane.normal.cross(other.normal).length() < kOneOpeningPlane &&
-             std::abs((plane.origin - other.origin).dot(other.normal)) < kOneOpeningPlane * size;
-    };
-    const auto known = std::ranges::find_if(planes_, is_same);
+    const auto known = std::ranges::find_if(planes_, [&](const OpenPlane& other) { return are_one(plane, other); });
     if (known == planes_.end()) {
       planes_.push_back(std::move(plane));
       return;
@@ -248,6 +301,7 @@ class Cover {
 
   /// Puts the triangles into patches: those of connected ones around which sides lie, or else a new one.
   void add_to(const std::string& name, bool is_symmetric) {
+    if (plane_.patch != kNone) return add_all_to(plane_.patch);
     const std::map<OpenEdge, Index> sides = sides_at(volume_, plane_.edges);
     if (is_symmetric) make_symmetric(sides, name);
     DisjointSets pieces(given_.size() + mesh_.added.size());
@@ -261,13 +315,18 @@ class Cover {
       Index& here = patch[pieces.first(triangle[0])];
       if (here == kNone) {
         here = static_cast<Index>(volume_.patches.size());
-        volume_.patches.push_back({.name = unused(name), .kind = kind_of(is_symmetric)});
+        volume_.patches.push_back({.name = free_name(volume_, name), .kind = kind_of(is_symmetric)});
       }
       front_.triangles.push_back({{point(triangle[0]), point(triangle[1]), point(triangle[2])}, kNone, here});
     }
   }
 
  private:
+  void add_all_to(Index patch) {
+    for (const auto& [a, b, c] : mesh_.triangles)
+      front_.triangles.push_back({{point(a), point(b), point(c)}, kNone, patch});
+  }
+
   PlaneMesh meshed(const PlaneRegion& region) const {
     try {
       return mesh_plane(region);
@@ -284,20 +343,12 @@ class Cover {
     return is_symmetric ? BoundaryPatch::Kind::Symmetry : BoundaryPatch::Kind::Side;
   }
 
-  /// The name, or with a number behind it if a patch has it.
-  std::string unused(const std::string& name) const {
-    std::string tried = name;
-    for (int n = 2; std::ranges::find(volume_.patches, tried, &BoundaryPatch::name) != volume_.patches.end(); ++n)
-      tried = fmt::format("{}_{}", name, n);
-    return tried;
-  }
-
   /// The sides of all bodies that end at the plane belong to it.
   void make_symmetric(const std::map<OpenEdge, Index>& sides, const std::string& name) {
     std::set<Index> patches;
     for (const auto& [edge, side] : sides) patches.insert(side);
     for (const Index i : patches) {
-      volume_.patches[i].name = unused(name);
+      volume_.patches[i].name = free_name(volume_, name);
       volume_.patches[i].kind = BoundaryPatch::Kind::Symmetry;
     }
   }
@@ -344,7 +395,7 @@ std::vector<SymmetryPlane> guessed_planes(std::span<const Vec3d> points, std::sp
       const Vec3d to = points[edge[1]] - first;
       return (to - along * along.dot(to)).length() < kOffPlane * size;
     });
-    if (is_line && !is_across) guessed.push_back({n, n.dot(plane.origin)});
+    if (is_line && !is_across && plane.patch == kNone) guessed.push_back({n, n.dot(plane.origin)});
   }
   return guessed;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct OpenPlane {
   Vec3d origin;
   Vec3d normal;  ///< Unit length.
   std::vector<std::array<std::uint32_t, 2>> edges;
-  bool meets_others = false;  ///< Its edges go on in other planes, and the normal leads out of what is to be filled.
+  bool meets_others = false;    ///< Its edges go on in other planes, and the normal leads out of what is to be filled.
+  std::uint32_t patch = kNone;  ///< Of kind Periodic, that all of it is of.
 };
 
 /// Two axes across a normal of unit length, which make a right-handed frame with it; axes of coordinates if it is one.
@@ -39,5 +41,14 @@ bool is_enclosed_by(std::span<const Vec3d> points, std::span<const FrontTriangle
 /// \param name of patches that are added, and of all if they are `symmetric`
 void cover(const OpenPlane& plane, const FillOptions& options, const std::string& name, bool is_symmetric,
            FillFront& front, VolumeMesh& volume);
+
+/// For points at the edges of the first periodic patch's opening those of the second's that the mesh's motion takes
+/// them to.
+std::map<std::uint32_t, std::uint32_t> periodic_images(const VolumeMesh& volume, const OpenPlane& first,
+                                                       const OpenPlane& second);
+
+/// Covers the opening of the second periodic patch as the mesh's motion takes the first one's cover there.
+/// \pre the first one is covered \throw FillFailed where their edges differ
+void cover_as(const OpenPlane& first, const OpenPlane& second, FillFront& front, VolumeMesh& volume);
 
 }  // namespace vdb_offset

@@ -108,9 +108,17 @@ class PlaneLineFinder {
     std::array<Index, 3> key{pair[0], pair[1], third};
     std::ranges::sort(key);
     const auto [corner, is_new] = corners_.try_emplace(key, static_cast<Index>(points_.size() + lines_.corners.size()));
-    if (is_new) lines_.corners.push_back(from + direction * least);
+    if (is_new) lines_.corners.push_back(crossing(key, from));
     lines_.segments.push_back({pair, {end.point, corner->second}});
     joined_.insert({corner->second, pair});
+  }
+
+  /// Where three planes cross. A point that is to be on the first two may be a little off these.
+  Vec3d crossing(const std::array<Index, 3>& three, const Vec3d& near) const {
+    const Vec3d &a = planes_[three[0]].normal, &b = planes_[three[1]].normal, &c = planes_[three[2]].normal;
+    const auto height = [&](Index plane) { return planes_[plane].normal.dot(planes_[plane].origin - near); };
+    const Vec3d sum = b.cross(c) * height(three[0]) + c.cross(a) * height(three[1]) + a.cross(b) * height(three[2]);
+    return near + sum / a.dot(b.cross(c));
   }
 
   /// Joins the corners that have no segment on a line yet, from one to the next.
@@ -169,6 +177,11 @@ class PlaneLineCloser {
         for (const Index p : {a, b}) shorten(p, (points[a] - points[b]).length());
   }
 
+  void make_alike(Index a, Index b) {
+    shorten(a, size_.at(b));
+    shorten(b, size_.at(a));
+  }
+
   void add(const LineSegment& segment) {
     const auto [from, to] = segment.ends;
     const Vec3d a = points_[from], b = points_[to];
@@ -211,9 +224,10 @@ PlaneLines find_plane_lines(std::span<const Vec3d> points, std::span<const OpenP
 }
 
 void close_along(const PlaneLines& lines, double growth, double longest, std::vector<Vec3d>& points,
-                 std::vector<OpenPlane>& planes) {
+                 std::vector<OpenPlane>& planes, const std::map<std::uint32_t, std::uint32_t>& alike) {
   points.insert(points.end(), lines.corners.begin(), lines.corners.end());
   PlaneLineCloser closer(growth, longest, points, planes);
+  for (const auto& [a, b] : alike) closer.make_alike(a, b);
   for (const LineSegment& segment : lines.segments) closer.add(segment);
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -30,7 +31,8 @@ PlaneLines find_plane_lines(std::span<const Vec3d> points, std::span<const OpenP
 
 /// Adds the segments to both of their planes, parted into edges that are as long as those of openings at their ends,
 /// and grow from there. Points are added to the mesh.
+/// \param alike pairs of points at which edges are to be as long as at each other
 void close_along(const PlaneLines& lines, double growth, double longest, std::vector<Vec3d>& points,
-                 std::vector<OpenPlane>& planes);
+                 std::vector<OpenPlane>& planes, const std::map<std::uint32_t, std::uint32_t>& alike = {});
 
 }  // namespace vdb_offset

@@ -259,6 +259,8 @@ Json layers_json(const LayerReport& layers) {
                      {"split_points", layers.split_points},
                      {"turned_faces", layers.turned_faces}};
   report["inverted_block_cells"] = layers.inverted_block_cells;
+  if (const auto& periodic = layers.periodic)
+    report["periodic"] = {{"pairs", periodic->pairs}, {"copies", periodic->copies}, {"apart", periodic->apart}};
   if (layers.fill) report["fill"] = fill_json(*layers.fill);
   if (layers.foam)
     report["openfoam"] = {{"wrong_faces", layers.foam->wrong_faces},

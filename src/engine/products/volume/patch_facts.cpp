@@ -46,7 +46,7 @@ std::optional<SymmetryPlane> plane_of_patch(const VolumeMesh& mesh, const Bounda
 }  // namespace
 
 const char* name(BoundaryPatch::Kind kind) {
-  constexpr const char* kNames[] = {"wall", "farfield", "side", "symmetry", "empty", "inlet", "outlet"};
+  constexpr const char* kNames[] = {"wall", "farfield", "side", "symmetry", "empty", "inlet", "outlet", "periodic"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
