@@ -146,7 +146,7 @@ VDB_OFFSET_API LayersResult grow_layers(PolygonView mesh, std::span<const Distan
 
 /// grow_layers() on one period of a shape, whose other periods count as well: layers on borders are as they would be
 /// inside of the whole shape, and the motion takes those of one border to those of the other, to rounding. Obstacles
-/// stay where they are. Statistics of faces and of the grid are those of the mesh with its copies.
+/// stay where they are. Figures of faces, of what was limited and of the grid are those of the mesh with its copies.
 /// \throw InvalidInput as grow_layers() and find_periodic_pairs(), and for an angle that a whole circle is no multiple
 /// of
 VDB_OFFSET_API LayersResult grow_periodic_layers(PolygonView mesh, std::span<const Distances> heights,

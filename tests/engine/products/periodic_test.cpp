@@ -53,6 +53,12 @@ TEST_CASE("layers on periodic borders are copies of each other, at their heights
   CHECK(layers.periodic->facts.apart < 1e-5);
   CHECK(most_apart(layers) < 1e-12);
   for (std::size_t v = 0; v < wall.positions.size(); ++v) CHECK(layers.states[v] == VertexState::Reached);
+  // What is said is said of the mesh, and not of the copies that layers were grown with.
+  const OffsetStatistics& statistics = layers.statistics;
+  CHECK(statistics.facts.welded_vertices == wall.positions.size());
+  CHECK(statistics.vertices_by_state[static_cast<std::size_t>(VertexState::Reached)] == wall.positions.size());
+  CHECK(statistics.borders.planes.size() == 2);
+  CHECK(statistics.borders.held_vertices == 2 * 13);
   // Without the motion both borders go where their own faces lead them, which is not to each other.
   const LayersResult alone = grow_layers(wall.view(), heights, {});
   CHECK((turn(60)(alone.stacks.of(0)[2]) - alone.stacks.of(12)[2]).length() > 1e-3);

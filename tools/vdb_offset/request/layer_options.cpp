@@ -43,28 +43,12 @@ double parse_y_plus(const std::string& text) {
   return *number;
 }
 
-/// Numbers parted by commas.
-std::optional<std::vector<double>> numbers_of(std::string_view text) {
-  std::vector<double> numbers;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const auto number = decimal<double>(text.substr(begin, end - begin));
-    if (!number || !std::isfinite(*number)) return std::nullopt;
-    numbers.push_back(*number);
-    begin = end + 1;
-  }
-  return numbers;
-}
-
-std::optional<Vec3d> vector_of(std::string_view text) {
-  if (text == "x" || text == "y" || text == "z") {
-    Vec3d axis(0.0);
-    axis[text[0] - 'x'] = 1;
-    return axis;
-  }
-  const auto numbers = numbers_of(text);
-  if (!numbers || numbers->size() != 3) return std::nullopt;
-  return Vec3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+/// `x`, `y`, `z`, or three numbers.
+Vec3d parse_axis(const std::string& text) {
+  if (text != "x" && text != "y" && text != "z") return parse_vector("--periodic", text);
+  Vec3d axis(0.0);
+  axis[text[0] - 'x'] = 1;
+  return axis;
 }
 
 /// Degrees, or a share of a circle, as 360/7.
@@ -78,29 +62,28 @@ std::optional<double> angle_of(std::string_view text) {
 
 /// `rotate:AXIS,ANGLE`, with `@X,Y,Z` behind the axis where it is not through the origin, or `translate:X,Y,Z`.
 PeriodicMotion parse_motion(const std::string& text) {
-  const auto fail = [&]() -> UsageError {
-    return UsageError(fmt::format(
-        "--periodic: expected 'rotate:x,30' (or y, z, or A,B,C, and @X,Y,Z before the angle) or 'translate:X,Y,Z', got "
-        "'{}'",
-        text));
-  };
+  const std::string turn = "rotate:", shift = "translate:";
+  const std::size_t comma = text.rfind(',');
+  const bool is_shift = text.starts_with(shift);
+  require(is_shift || (text.starts_with(turn) && comma != std::string::npos),
+          fmt::format("--periodic: expected 'rotate:x,30' (or y, z, or A,B,C, and @X,Y,Z before the angle) or "
+                      "'translate:X,Y,Z', got '{}'",
+                      text));
   PeriodicMotion motion;
-  const std::string_view given = text, turn = "rotate:", shift = "translate:";
-  if (given.starts_with(shift)) {
-    const auto way = vector_of(given.substr(shift.size()));
-    if (!way || !(way->length() > 0)) throw fail();
-    motion.shift = *way;
+  if (is_shift) {
+    motion.shift = parse_vector("--periodic", text.substr(shift.size()));
+    require(motion.shift.length() > 0, fmt::format("--periodic: expected a shift other than 0, got '{}'", text));
     return motion;
   }
-  if (!given.starts_with(turn) || given.rfind(',') == std::string_view::npos) throw fail();
-  const std::string_view line = given.substr(turn.size(), given.rfind(',') - turn.size());
+  const std::string line = text.substr(turn.size(), comma - turn.size());
   const std::size_t at = line.find('@');
-  const auto axis = vector_of(line.substr(0, at)),
-             point = at == std::string_view::npos ? std::optional(Vec3d(0.0)) : vector_of(line.substr(at + 1));
-  const auto angle = angle_of(given.substr(given.rfind(',') + 1));
-  if (!axis || !(axis->length() > 0) || !point || !angle) throw fail();
-  motion.axis = axis->unit();
-  motion.point = *point;
+  motion.axis = parse_axis(line.substr(0, at));
+  if (at != std::string::npos) motion.point = parse_vector("--periodic", line.substr(at + 1));
+  const auto angle = angle_of(std::string_view(text).substr(comma + 1));
+  require(
+      motion.axis.length() > 0 && angle,
+      fmt::format("--periodic: expected an axis, and an angle other than 0, in degrees or as 360/7, got '{}'", text));
+  motion.axis.normalize(0.0);
   motion.angle = *angle;
   return motion;
 }

@@ -10,6 +10,7 @@
 #include "ground/mesh/count_states.h"
 #include "ground/system/parallel.h"
 #include "products/periodic/repeated_mesh.h"
+#include "space/surface/surface.h"
 #include "vdb_offset/layers.h"
 
 namespace vdb_offset {
@@ -52,7 +53,9 @@ class PeriodicGrowth {
       grown = grow(kept);
     take_own(grown);
     copy_borders(grown);
+    grown.statistics.vertices_by_state = {};
     count_states(grown.states, grown.statistics);
+    tell_of_mesh(grown);
     pairs_.facts.copies = repeated_.copies();
     grown.periodic = std::move(pairs_);
     return grown;
@@ -105,6 +108,27 @@ class PeriodicGrowth {
     const auto from = grown.stacks.of(v), to = grown.stacks.of(w);
     const double thickness = (from.back() - from.front()).length();
     return thickness > 0 ? (pairs_.motion(from.back()) - to.back()).length() / thickness : 0;
+  }
+
+  /// What is said of the mesh and of planes of its borders is said of the one that was given, and not of its copies.
+  void tell_of_mesh(LayersResult& grown) const {
+    grown.statistics.facts = build_surface(mesh_, options_.weld, options_.orient).facts;
+    const double tolerance = kOffPeriod * used_diagonal(mesh_);
+    const auto is_on = [&](const SymmetryPlane& plane, Index v) {
+      return grown.welded_to[v] == v && pairs_.image[v] != v && std::abs(plane.height(mesh_.positions[v])) <= tolerance;
+    };
+    const auto has_none = [&](const SymmetryPlane& plane) {
+      for (Index v = 0; v < mesh_.positions.size(); ++v)
+        if (is_on(plane, v)) return false;
+      return true;
+    };
+    BorderFacts& borders = grown.statistics.borders;
+    std::erase_if(borders.planes, has_none);
+    std::erase_if(borders.left, [&](const BorderFacts::LeftPlane& left) { return has_none(left.plane); });
+    borders.held_vertices = 0;
+    for (Index v = 0; v < mesh_.positions.size(); ++v)
+      borders.held_vertices +=
+          std::ranges::any_of(borders.planes, [&](const SymmetryPlane& plane) { return is_on(plane, v); });
   }
 
   /// Leaves what is of the mesh itself.
