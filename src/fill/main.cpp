@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program that fills volumes by Netgen, or by TetGen. Programs of the project start it, hand it one domain and get
-// its cells (messages/fill_messages.h); by hand it is of no use.
+// The program that fills volumes by Netgen, TetGen or gmsh. Programs of the project start it, hand it one domain and
+// get its cells (messages/fill_messages.h); by hand it is of no use.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -8,15 +8,19 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <cstring>
 #include <mutex>
 #include <new>
 #include <thread>
 
+#include "child_program.h"
+#include "gmsh.h"
 #include "ground/process/guard.h"
 #include "ground/process/memory_limit.h"
 #include "ground/process/progress.h"
 #include "messages/fill_messages.h"
 #include "netgen.h"
+#include "sizes.h"
 #include "tetgen.h"
 #include "vdb_offset/api.h"
 
@@ -68,6 +72,8 @@ Reply reply_to(const Message& asked) {
         return {FillReply::Done, pack(fill_by_netgen(task.domain))};
       case FillWith::TetGen:
         return {FillReply::Done, pack(fill_by_tetgen(task.domain, task.folder, task.most_memory))};
+      case FillWith::Gmsh:
+        return {FillReply::Done, pack(fill_by_gmsh(task.domain, task.folder, task.most_memory))};
     }
     throw BadMessage("a request of no kind");
   } catch (const FillerMissing& missing) {
@@ -92,8 +98,16 @@ void serve() {
 }  // namespace
 }  // namespace vdb_offset
 
-int main(int, char** words) {
+int main(int count, char** words) {
   using namespace vdb_offset;
+  if (count == 3 && std::strcmp(words[1], "sizes") == 0) {  // gmsh asks
+    try {
+      serve_sizes(words[2]);
+    } catch (const std::exception&) {
+      return 1;
+    }
+    return 0;
+  }
   if (::fcntl(kWorkerEnd, F_GETFD) < 0 || ::fcntl(kWorkerMessages, F_GETFD) < 0) {
     std::fprintf(stderr, "%s: is started by vdb_offset, for --fill\n", words[0]);
     return 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "vdb_offset/fill.h"
@@ -12,10 +13,5 @@ namespace vdb_offset {
 /// \param most_memory how many bytes of addresses it may ask for; 0: any
 /// \throw FillFailed with how it ended, or what of its files is missing; FillerMissing if there is no such program
 FilledDomain fill_by_tetgen(const FillDomain& domain, const std::string& folder, std::uint64_t most_memory);
-
-/// There is no such program.
-struct FillerMissing : FillFailed {
-  using FillFailed::FillFailed;
-};
 
 }  // namespace vdb_offset

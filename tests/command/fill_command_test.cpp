@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -43,13 +44,18 @@ TEST_CASE("--fill fills what layers leave, and --case writes what a solver needs
   const auto report = nlohmann::json::parse(std::ifstream(shell.file("r.json")));
   CHECK(report["layers"]["fill"]["triangles"] > 50);
   CHECK(report["layers"]["fill"]["scaled_jacobian"]["median"] > 0.6);
-  // What is there stays.
+  // What is there stays; where it is not as the case would have it, that is said.
+  const std::string again =
+      "square.dat case/constant/polyMesh --layers 3 --first-height 0.02 --fill --farfield box:3L "
+      "--case openfoam:case --speed 2 --patch wall=body --patch farfield=far:farfield --reynolds ";
+  CHECK_THAT(shell(again + "100").err, !Catch::Contains("warning: case"));
   std::ofstream(shell.file("case/0/U")) << "mine";
-  CHECK(
-      shell(
-          "square.dat case/constant/polyMesh --layers 3 --first-height 0.02 --fill --case openfoam:case --viscosity 1")
-          .code == 0);
+  std::filesystem::create_directories(shell.file("case/500"));
+  const Run kept = shell(again + "50");
+  CHECK(kept.code == 0);
   CHECK(text_of(shell.file("case/0/U")) == "mine");
+  CHECK_THAT(kept.err, Catch::Contains("rm case/0/U case/constant/transportProperties case/README)"));
+  CHECK_THAT(kept.err, Catch::Contains("rm -r case/500)"));
 }
 
 TEST_CASE("--periodic couples the two borders of a period", "[command]") {
@@ -155,4 +161,30 @@ TEST_CASE("--fill says in one line what it cannot do", "[command]") {
     CHECK_FALSE(shell.has("none.vtu"));
     CHECK_FALSE(shell.has("c"));
   }
+}
+
+TEST_CASE("patches that cannot be are refused before the mesh is filled, all at once and by their planes",
+          "[command]") {
+  ShellCommand shell;
+  {
+    std::ofstream pipe(shell.file("pipe.obj"));
+    for (int i = 0; i <= 4; ++i)
+      for (int j = 0; j < 12; ++j)
+        pipe << "v " << i << ' ' << std::cos(M_PI * j / 6) << ' ' << std::sin(M_PI * j / 6) << '\n';
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 12; ++j)
+        pipe << "f " << i * 12 + j + 1 << ' ' << i * 12 + (j + 1) % 12 + 1 << ' ' << (i + 1) * 12 + (j + 1) % 12 + 1
+             << ' ' << (i + 1) * 12 + j + 1 << '\n';
+  }
+  // The filler has no time, which would be found first.
+  const std::string layers =
+      "pipe.obj pipe/constant/polyMesh --layers 2 --total-thickness=-0.1 --fill --fill-seconds 1e-9 ";
+  const Run unknown = shell(layers + "--case openfoam:pipe --reynolds 20");
+  CHECK(unknown.code == 1);
+  for (const char* const says : {"sides_1 (in x = 0)", "sides_2 (in x = 4)", "--patch sides_1=inlet:inlet"})
+    CHECK_THAT(unknown.err, Catch::Contains(says));
+  const Run misnamed = shell(layers + "--patch inlet=a");
+  CHECK(misnamed.code == 1);
+  CHECK_THAT(misnamed.err, Catch::Contains("expected one of wall, sides_1, sides_2, got 'inlet'"));
+  CHECK_FALSE(shell.has("pipe"));
 }

@@ -130,6 +130,7 @@ FillOptions fill_options(const Job& job, PolygonView mesh, ProgressBar& bar) {
     options.longest = request.longest->in_world_units(request.longest->percent ? used_diagonal(mesh) : 0);
   const auto format = io::volume_format_of(job.request.output);
   const bool holds_polyhedra = format != io::VolumeFormat::Msh && format != io::VolumeFormat::Su2;
+  options.before = [&request = job.request](const VolumeMesh& bordered) { require_patches(request, bordered); };
   options.quads = request.quads.value_or(holds_polyhedra ? FillQuads::Split : FillQuads::Pyramids);
   return options;
 }
@@ -143,7 +144,7 @@ void fill_cells(const Job& job, Grown& grown, const FillOptions& options) {
   }
   const FillRequest& request = *job.request.fill;
   const io::FillerLimits limits{request.seconds, job.request.max_memory, options.progress};
-  const Filler filler = request.by_tetgen ? io::tetgen_filler(limits) : io::netgen_filler(limits);
+  const Filler filler = io::make_filler(request.with, limits);
   grown.filled = fill_volume(grown.mesh(job.source), grown.layers, grown.cells->facts(), grown.names,
                              std::move(*grown.cells).make(grown.names), options, filler, &report);
 }
@@ -170,40 +171,14 @@ VolumeMesh cells_on_curves(const Job& job, Grown& grown) {
   return extruded(grown.on_curves, kThickness * used_diagonal(job.source.view()));
 }
 
-/// Calls patches as is asked for.
-void rename_patches(const Request& request, VolumeMesh& mesh) {
-  for (const PatchRequest& asked : request.patches) {
-    const auto patch = std::ranges::find(mesh.patches, asked.patch, &BoundaryPatch::name);
-    if (patch == mesh.patches.end()) {
-      std::vector<std::string> names;
-      for (const BoundaryPatch& each : mesh.patches) names.push_back(each.name);
-      throw InvalidOption(fmt::format("--patch: expected one of {}, got '{}'", fmt::join(names, ", "), asked.patch));
-    }
-    if (asked.kind && patch->kind == BoundaryPatch::Kind::Periodic)
-      throw InvalidOption(fmt::format("--patch: expected a name alone for {}, which is periodic", asked.patch));
-    patch->name = asked.name;
-    if (asked.kind) patch->kind = *asked.kind;
-  }
-}
-
-void write_case(const Job& job, const VolumeMesh& mesh) {
-  const CaseRequest& request = job.request.solver_case;
-  io::Flow flow = flow_of(job);
-  if (job.curves()) flow.thickness = kThickness * used_diagonal(job.source.view());
-  std::vector<io::CasePatch> patches;
-  for (const BoundaryPatch& patch : mesh.patches)
-    if (patch.face_count() > 0) patches.push_back({patch.name, patch.kind});
-  if (request.of_su2) io::write_su2_case(job.request.output, patches, flow);
-  else io::write_openfoam_case(request.folder, patches, flow);
-}
-
 void write_volume(const Job& job, Grown& grown) {
   VolumeMesh mesh = job.curves()   ? cells_on_curves(job, grown)
                     : grown.filled ? std::move(*grown.filled)
                                    : std::move(*grown.cells).make(grown.names);
+  require_patches(job.request, mesh);
   rename_patches(job.request, mesh);
   grown.report.boundary = patch_facts(mesh);
-  if (!job.request.solver_case.folder.empty()) write_case(job, mesh);
+  write_case(job, mesh, job.curves() ? kThickness * used_diagonal(job.source.view()) : 0);
   const io::VolumeWriteResult written = io::write_volume(job.request.output, std::move(mesh));
   grown.report.foam = written.foam;
 }

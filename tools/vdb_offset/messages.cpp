@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -64,6 +66,19 @@ std::string shortened(std::string_view text, std::size_t most) {
   while (head > 0 && is_tail(text[head])) --head;
   while (tail < text.size() && is_tail(text[tail])) ++tail;
   return std::string(text.substr(0, head)).append(kGap).append(text.substr(tail));
+}
+
+std::string shell_word(std::string_view word) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) || c > 127 || std::string_view("._-+=/,:@%").find(static_cast<char>(c)) != std::string::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return std::string(word);
+  std::string quoted = "'";
+  for (const char c : word) {
+    if (c == '\'') quoted += "'\\''";
+    else quoted += c;
+  }
+  return quoted + "'";
 }
 
 std::string readable(std::string_view message) {

@@ -21,6 +21,9 @@ std::string as_text(std::string_view bytes);
 /// `\xff`, words and the whole of a length that can be read.
 std::string readable(std::string_view message);
 
+/// A word as a shell takes it, in quotes where it has other characters than names and numbers.
+std::string shell_word(std::string_view word);
+
 /// Prints `vdb_offset: MESSAGE` on standard error. If that is closed or full, the message is lost.
 void report_problem(std::string_view message) noexcept;
 

@@ -27,18 +27,24 @@ struct CasePatch {
   BoundaryPatch::Kind kind;
 };
 
+/// What became of a case's files. Those that are there stay as they are: a user may have changed them.
+struct CaseFiles {
+  std::vector<std::string> written;
+  std::vector<std::string> kept;  ///< Were there, with another text than this case has.
+  /// Folders with results of an earlier run, which a solver goes on from, whatever mesh they belong to.
+  std::vector<std::string> results;
+};
+
 /// Writes a case for OpenFOAM's simpleFoam, steady and laminar, into a folder that has the mesh in constant/polyMesh:
 /// fields with conditions by the patches' kinds, schemes and solvers that suit layers and tetrahedra, forces on the
-/// walls, and a README of how to run it. Files that are there stay as they are. Returns the names of those that are
-/// written. \throw InvalidInput for a viscosity that is not above 0, and for patches of kind Side, which say nothing of
-/// the flow; WriteError
-VDB_OFFSET_API std::vector<std::string> write_openfoam_case(const std::string& folder,
-                                                            std::span<const CasePatch> patches, const Flow& flow);
+/// walls, and a README of how to run it. \throw InvalidInput for a viscosity that is not above 0, and for patches of
+/// kind Side, which say nothing of the flow; WriteError
+VDB_OFFSET_API CaseFiles write_openfoam_case(const std::string& folder, std::span<const CasePatch> patches,
+                                             const Flow& flow);
 
 /// Writes a case for SU2's solver of incompressible flows, steady and laminar, beside a .su2 file: flow.cfg, with
-/// markers by the patches' kinds, and a README. Plane meshes have a thickness above 0, which does not count. Files that
-/// are there stay as they are. Returns the names of those that are written. \throw as write_openfoam_case()
-VDB_OFFSET_API std::vector<std::string> write_su2_case(const std::string& mesh, std::span<const CasePatch> patches,
-                                                       const Flow& flow);
+/// markers by the patches' kinds, and a README. Plane meshes have a thickness above 0, which does not count.
+/// \throw as write_openfoam_case()
+VDB_OFFSET_API CaseFiles write_su2_case(const std::string& mesh, std::span<const CasePatch> patches, const Flow& flow);
 
 }  // namespace vdb_offset::io

@@ -16,15 +16,10 @@ struct FillerLimits {
   ProgressCallback progress;      ///< Called with Stage::Fill, so that filling can be cancelled.
 };
 
-/// Netgen (Schoeberl, NETGEN: An advancing front 2D/3D-mesh generator based on abstract rules, 1997), in a program of
-/// its own, vdb_offset_fill, whose end does not reach this process. The filler throws FillFailed where Netgen does not
-/// fill the domain, be it that it crashes or takes too long; OutOfBudget where it asks for more memory than it may;
-/// ReadError if there is no such program.
-VDB_OFFSET_API Filler netgen_filler(FillerLimits limits);
-
-/// TetGen (Si, TetGen, a Delaunay-based quality tetrahedral mesh generator, 2015), the program tetgen, as far as it is
-/// installed: 10 to 30 times as fast as Netgen, with worse cells. Of the domain's sizes it uses the longest edge alone.
-/// As netgen_filler(), and ReadError where tetgen is not installed.
-VDB_OFFSET_API Filler tetgen_filler(FillerLimits limits);
+/// A filler that runs in a program of its own, vdb_offset_fill, whose end does not reach this process. It throws
+/// FillFailed where the domain is not filled, be it that the program crashes or takes too long; OutOfBudget where it
+/// asks for more memory than it may, or has to, by the number of the domain's triangles; ReadError if there is no such
+/// program.
+VDB_OFFSET_API Filler make_filler(FillWith with, FillerLimits limits);
 
 }  // namespace vdb_offset::io

@@ -2,23 +2,38 @@
 #include "flow/case_texts.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
+#include <fstream>
+#include <system_error>
 
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/run.h"
 
 namespace vdb_offset::io {
+namespace {
+
+bool has_text(const std::filesystem::path& path, const std::string& text) {
+  std::error_code error;
+  if (std::filesystem::file_size(path, error) != text.size() || error) return false;
+  std::string there(text.size(), '\0');
+  return std::ifstream(path, std::ios::binary).read(there.data(), static_cast<std::streamsize>(there.size())) &&
+         there == text;
+}
+
+}  // namespace
 
 void require_flow(std::span<const CasePatch> patches, const Flow& flow) {
   if (!(flow.viscosity > 0) || !(flow.speed > 0) || !(flow.length > 0))
     throw InvalidInput("case: expected a speed, a length and a viscosity above 0");
+  std::vector<std::string> unknown;
   for (const CasePatch& patch : patches)
-    if (patch.kind == BoundaryPatch::Kind::Side)
-      throw InvalidInput(
-          fmt::format("case: expected to know what {0} is (--patch {0}=inlet:inlet, or outlet, wall, "
-                      "symmetry, farfield)",
-                      patch.name));
+    if (patch.kind == BoundaryPatch::Kind::Side) unknown.push_back(patch.name);
+  if (!unknown.empty())
+    throw InvalidInput(
+        fmt::format("case: expected to know what flows through each patch, got sides of which that is not known: {}",
+                    fmt::join(unknown, ", ")));
 }
 
 Vec3d direction_of(const Flow& flow) {
@@ -58,18 +73,21 @@ std::string conditions_in_words(std::span<const CasePatch> patches) {
   return text;
 }
 
-std::vector<std::string> write_where_missing(const std::string& folder, std::span<const CaseText> files) {
-  std::vector<std::string> written;
+CaseFiles write_where_missing(const std::string& folder, std::span<const CaseText> files) {
+  CaseFiles all;
   OutputFiles outputs;
   for (const auto& [name, text] : files) {
     const std::filesystem::path path = std::filesystem::path(folder) / name;
-    if (std::filesystem::exists(path)) continue;
+    if (std::filesystem::exists(path)) {
+      if (!has_text(path, text)) all.kept.push_back(path.string());
+      continue;
+    }
     outputs.add_folders(path.parent_path());
     write_file(path.string(), text);
-    written.push_back(path.string());
+    all.written.push_back(path.string());
   }
   outputs.commit();
-  return written;
+  return all;
 }
 
 }  // namespace vdb_offset::io

@@ -28,7 +28,7 @@ std::string flow_in_words(const Flow& flow);
 /// What a README says last: the conditions of the patches.
 std::string conditions_in_words(std::span<const CasePatch> patches);
 
-/// Writes those files that are not there, all or none of them. Returns their names. \throw WriteError
-std::vector<std::string> write_where_missing(const std::string& folder, std::span<const CaseText> files);
+/// Writes those files that are not there, all or none of them. \throw WriteError
+CaseFiles write_where_missing(const std::string& folder, std::span<const CaseText> files);
 
 }  // namespace vdb_offset::io

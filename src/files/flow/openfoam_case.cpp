@@ -4,9 +4,14 @@
 // to 17 % with gradients by least squares, and 22 to 34 % with limited ones.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
+#include <system_error>
 
 #include "flow/case_texts.h"
+#include "vdb_offset/numbers.h"
 
 namespace vdb_offset::io {
 namespace {
@@ -149,10 +154,21 @@ class OpenFoamCase {
   Vec3d direction_;
 };
 
+/// Folders of times after the start, with results.
+std::vector<std::string> times_in(const std::string& folder) {
+  std::vector<std::string> times;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::optional<double> time = decimal<double>(entry.path().filename().string());
+    if (time && *time > 0 && entry.is_directory()) times.push_back(entry.path().string());
+  }
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
 }  // namespace
 
-std::vector<std::string> write_openfoam_case(const std::string& folder, std::span<const CasePatch> patches,
-                                             const Flow& flow) {
+CaseFiles write_openfoam_case(const std::string& folder, std::span<const CasePatch> patches, const Flow& flow) {
   require_flow(patches, flow);
   const OpenFoamCase texts(patches, flow);
   const CaseText files[] = {{"0/U", texts.velocity()},
@@ -163,7 +179,9 @@ std::vector<std::string> write_openfoam_case(const std::string& folder, std::spa
                             {"system/fvSchemes", texts.schemes()},
                             {"system/fvSolution", texts.solution()},
                             {"README", texts.readme()}};
-  return write_where_missing(folder, files);
+  CaseFiles all = write_where_missing(folder, files);
+  all.results = times_in(folder);
+  return all;
 }
 
 }  // namespace vdb_offset::io

@@ -88,7 +88,7 @@ class Su2Case {
 
 }  // namespace
 
-std::vector<std::string> write_su2_case(const std::string& mesh, std::span<const CasePatch> patches, const Flow& flow) {
+CaseFiles write_su2_case(const std::string& mesh, std::span<const CasePatch> patches, const Flow& flow) {
   require_flow(patches, flow);
   const std::filesystem::path path = mesh;
   const std::string name = path.filename().string();

@@ -12,10 +12,7 @@
 namespace vdb_offset {
 
 // What the program and its worker, vdb_offset_fill, send each other. The worker first says its version; then it gets
-// one request, and sends one reply.
-
-/// What a worker fills with: the kind of a request, whose payload is a FillTask.
-enum class FillWith : std::uint32_t { Netgen = 1, TetGen = 2 };
+// one request, whose kind is an FillWith and whose payload a FillTask, and sends one reply.
 
 /// What the worker says.
 enum class FillReply : std::uint32_t {

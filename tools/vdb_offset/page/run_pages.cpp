@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 
+#include "messages.h"
 #include "request/units.h"
 #include "summary/summary.h"
 #include "vdb_offset/io/mesh_file.h"
@@ -18,20 +18,6 @@
 
 namespace vdb_offset::tool {
 namespace {
-
-/// A word as a shell takes it, in quotes where it has other characters than names and numbers.
-std::string shell_word(std::string_view word) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) || c > 127 || std::string_view("._-+=/,:@%").find(static_cast<char>(c)) != std::string::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return std::string(word);
-  std::string quoted = "'";
-  for (const char c : word) {
-    if (c == '\'') quoted += "'\\''";
-    else quoted += c;
-  }
-  return quoted + "'";
-}
 
 io::PageSurface surface_of(const std::string& name, const OffsetResult& result) {
   io::PageSurface surface;

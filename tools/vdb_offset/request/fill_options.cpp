@@ -2,6 +2,7 @@
 // The options of --fill, and what each of them sets.
 #include <fmt/format.h>
 
+#include <array>
 #include <limits>
 #include <string>
 
@@ -44,10 +45,11 @@ void declare_fill(CommandLine& line, Draft& draft) {
             "layers inside of it, or the outside of bodies, out to the farfield",
             draft.fills);
   line.option("--fill-with", "FILLER",
-              "With --fill: 'netgen', or 'tetgen', which has to be installed: 10 to 30 times as fast, with worse cells "
-              "[netgen]",
-              fill.by_tetgen, [](const std::string& text) {
-                return parse_word("--fill-with", text, {"netgen", "tetgen"}) == 1;
+              "With --fill: 'netgen', or what has to be installed: 'tetgen' is 10 to 30 times as fast, with worse "
+              "cells, 'gmsh' 2 to 5 times [netgen]",
+              fill.with, [](const std::string& text) {
+                constexpr std::array kFillers{FillWith::Netgen, FillWith::TetGen, FillWith::Gmsh};
+                return kFillers[parse_word("--fill-with", text, {"netgen", "tetgen", "gmsh"})];
               });
   line.option("--farfield", "WHERE",
               "With --fill around bodies: where the mesh ends: 'sphere:R' around the middle of the wall's box, 'box:R' "

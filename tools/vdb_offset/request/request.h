@@ -81,8 +81,8 @@ struct FillRequest {
   double growth = 1.3;
   std::optional<GivenDistance> longest;
   std::optional<FillQuads> quads;  ///< None: as OUTPUT can hold.
-  bool by_tetgen = false;          ///< Else by Netgen.
-  bool caps = true;                ///< Cover flat openings.
+  FillWith with = FillWith::Netgen;
+  bool caps = true;  ///< Cover flat openings.
   double seconds = 3600;
   bool layers_anyway = false;  ///< Where the rest cannot be filled, write the layers alone.
 };

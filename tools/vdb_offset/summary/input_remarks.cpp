@@ -18,14 +18,18 @@ namespace vdb_offset::tool {
 namespace {
 
 std::string text_of(const SymmetryPlane& plane) {
+  constexpr double kRounding = 1e-9;  // of a unit normal
+  const double side = plane.normal[0] + plane.normal[1] + plane.normal[2] < 0 ? -1 : 1;
   std::string text;
   for (int k = 0; k < 3; ++k) {
-    if (plane.normal[k] == 0) continue;
-    if (!text.empty()) text += " + ";
-    if (plane.normal[k] != 1) text += fmt::format("{:.6g} ", plane.normal[k]);
+    const double part = side * plane.normal[k];
+    if (std::abs(part) <= kRounding) continue;
+    if (!text.empty()) text += part < 0 ? " - " : " + ";
+    else if (part < 0) text += '-';
+    if (std::abs(std::abs(part) - 1) > kRounding) text += fmt::format("{:.6g} ", std::abs(part));
     text += "xyz"[k];
   }
-  return fmt::format("{} = {:.6g}", text, plane.offset);
+  return fmt::format("{} = {:.6g}", text, side * plane.offset + 0.0);
 }
 
 /// A value of --weld that joins what is so far apart.

@@ -196,13 +196,7 @@ std::string in_words(const LayerGrowth& growth) {
 /// The patches that are written, and the planes that they lie in.
 void print_boundary(std::FILE* out, const LayerReport& report) {
   for (const auto& [patch, kind, faces, plane] : report.boundary) {
-    std::string in_plane;
-    if (plane) {
-      const Vec3d& n = plane->normal;
-      const bool is_turned = n[0] + n[1] + n[2] < 0;
-      const SymmetryPlane shown{is_turned ? -n : n, (is_turned ? -plane->offset : plane->offset) + 0.0};
-      in_plane = " in " + planes_in_words({&shown, 1});
-    }
+    const std::string in_plane = plane ? " in " + planes_in_words({&*plane, 1}) : "";
     fmt::print(out, "patch      {}: {}, {} faces{}\n", patch, name(kind), faces, in_plane);
   }
 }

@@ -168,7 +168,9 @@ Polygons sphere_around(const Frame& frame, double radius) {
   std::array<Vec3d, 3> axis = frame.axis;
   for (int k = 0; k < 3; ++k) {
     if (frame.ends_above[k] && frame.ends_below[k])
-      throw InvalidInput("farfield: expected a box, as the wall ends at two planes, got a sphere (--farfield box:10L)");
+      throw InvalidInput(
+          "farfield: expected a box, as the wall ends at two planes, got a sphere (--farfield box:10L; or to fill the "
+          "inside of a tube, heights of the other sign)");
     if (frame.ends_at(k)) middle[k] = frame.ends_above[k] ? frame.highest[k] : frame.lowest[k];
   }
   const Vec3d centre = frame.in_world(middle);

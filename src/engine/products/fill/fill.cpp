@@ -66,6 +66,7 @@ class Filling {
   }
 
   void fill(const Filler& filler) {
+    if (options_.before) options_.before(volume_);
     const FillDomain domain = make_domain();
     const auto start = std::chrono::steady_clock::now();
     const FilledDomain filled = filler(domain);
