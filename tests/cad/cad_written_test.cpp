@@ -82,6 +82,14 @@ TEST_CASE("cad written: a block stays what it is, outward and inward", "[cad]") 
   }
 }
 
+TEST_CASE("cad written: above the apex of a cone, its other half is not what a point is near to", "[cad]") {
+  const double distance = GENERATE(20.0, 8.24621, -20.0), sine = 1 / std::sqrt(10.0);  // of half the angle at the apex
+  const Written written = write("sharp_cone.brep", distance, "sharp_cone_out.brep");
+  CHECK(written.facts.made == Made::Solid);
+  const double height = 300 + distance + distance / sine, radius = height / 3;
+  CHECK(written.facts.volume == Approx(std::numbers::pi / 3 * radius * radius * height).epsilon(1e-3));
+}
+
 TEST_CASE("cad written: a fillet that the distance swallows is gone, and its neighbours meet", "[cad]") {
   const Written written = write("block.step", -4.5, "swallowed.brep");
   CHECK(written.facts.made == Made::Solid);

@@ -403,6 +403,7 @@ int main(int count, char** words) {
   write_brep(BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape()).Shape(), "spline.brep");
   write_brep(patch_with_hole(), "patch.brep");
   write_brep(BRepPrimAPI_MakeCone(6, 0, 8).Shape(), "cone.brep");
+  write_brep(BRepPrimAPI_MakeCone(100, 0, 300).Shape(), "sharp_cone.brep");
   write_brep(BRepPrimAPI_MakeTorus(10, 3).Shape(), "torus.brep");
   // Coordinates are written as they are, whatever the unit.
   write_step(BRepPrimAPI_MakeBox(2, 3, 4).Shape(), "inch.stp", "INCH");

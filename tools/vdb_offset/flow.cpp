@@ -34,6 +34,7 @@ void rename(const Request& request, std::vector<BoundaryPatch>& patches) {
     const auto patch = std::ranges::find(patches, asked.patch, &BoundaryPatch::name);
     if (patch == patches.end()) {
       std::vector<std::string> names;
+      names.reserve(patches.size());
       for (const BoundaryPatch& each : patches) names.push_back(each.name);
       throw InvalidOption(fmt::format("--patch: expected one of {}, got '{}'", fmt::join(names, ", "), asked.patch));
     }

@@ -2,6 +2,7 @@
 #include "judge/soup.h"
 
 #include <BRepBuilderAPI_Copy.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_Triangulation.hxx>
@@ -66,6 +67,17 @@ bool leaves(const Soup::Triangle& t, const std::array<double, 3>& shares, const 
   return s1 < -1e-9 || s2 < -1e-9 || 1 - s1 - s2 < -1e-9;
 }
 
+// Whether (u, v) lies beyond all of a face, as on the other half of a cone, where a way down from above the apex ends.
+bool is_beyond(const Soup::Face& face, const gp_Pnt2d& uv) {
+  constexpr double kRoundingOfParameters = 1e-9;  // of the range
+  const auto is_outside = [](double x, double from, double to) {
+    const double rounding = kRoundingOfParameters * (to - from);
+    return x < from - rounding || x > to + rounding;
+  };
+  return (!face.surface->IsUPeriodic() && is_outside(uv.X(), face.box.u0, face.box.u1)) ||
+         (!face.surface->IsVPeriodic() && is_outside(uv.Y(), face.box.v0, face.box.v1));
+}
+
 }  // namespace
 
 Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflection, double angle)
@@ -84,7 +96,9 @@ Soup::Soup(const TopoDS_Shape& shape, double border_deflection, double deflectio
     TopLoc_Location place;
     const Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(f, place);
     const double sign = f.Orientation() == TopAbs_REVERSED ? -1 : 1;
-    faces_.push_back({surface_of(f), sign});
+    Box2 box{};
+    BRepTools::UVBounds(f, box.u0, box.u1, box.v0, box.v1);
+    faces_.push_back({surface_of(f), sign, box});
     if (mesh.IsNull() || mesh->NbTriangles() == 0) {
       is_complete_ = false;
       continue;
@@ -127,7 +141,7 @@ Soup::Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::
   for (const auto& corners : triangles) {
     Triangle t{};
     t.face = faces.empty() ? 0 : faces[triangles_.size()];
-    faces_.resize(std::max(faces_.size(), static_cast<std::size_t>(t.face) + 1), {{}, 1});
+    faces_.resize(std::max(faces_.size(), static_cast<std::size_t>(t.face) + 1), {{}, 1, {}});
     for (int k = 0; k < 3; k++) {
       t.points[k] = points[corners[k]];
       t.nodes[k] = static_cast<int>(corners[k]);
@@ -230,7 +244,7 @@ SoupPoint Soup::closest(const gp_Pnt& point) const {
   double exact = 0;
   const gp_Pnt2d uv = project(*s, point, result.uv, &exact);
   const gp_Pnt foot = s->Value(uv.X(), uv.Y());
-  if (leaves(t, shares, uv)) return result;
+  if (leaves(t, shares, uv) || is_beyond(faces_[t.face], uv)) return result;
   if (foot.Distance(result.point) < kLongestCorrection * result.distance + 3 * deflection_) {
     result.point = foot;
     result.uv = uv;

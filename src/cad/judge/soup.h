@@ -12,6 +12,8 @@
 #include <gp_Vec.hxx>
 #include <vector>
 
+#include "offset/offset_surface.h"
+
 namespace vdb_offset::cad {
 
 /// A point of a face, found from its tessellation and corrected on its surface.
@@ -37,6 +39,7 @@ class Soup {
   struct Face {
     Handle(Geom_Surface) surface;
     double sign;  ///< Of the material's outside along Su x Sv.
+    Box2 box;     ///< What of (u, v) the face lies in.
   };
 
   /// Tessellates a copy of the shape: borders of faces more closely than what lies between them.
