@@ -90,10 +90,9 @@ class FillerRun {
                       name_of(with_), least / 1'000'000, domain.triangles.size(), limits_.most_memory / 1'000'000));
     try {
       start();
-      std::optional<FolderForFiles> folder;
-      if (with_ != FillWith::Netgen) folder.emplace();
+      if (with_ != FillWith::Netgen) folder_.emplace();
       process_->messages().send(static_cast<std::uint32_t>(with_),
-                                pack(FillTask{domain, folder ? folder->path() : "", limits_.most_memory}), until_);
+                                pack(FillTask{domain, folder_ ? folder_->path() : "", limits_.most_memory}), until_);
       const Message reply = receive();
       switch (static_cast<FillReply>(reply.kind)) {
         case FillReply::Done:
@@ -158,6 +157,7 @@ class FillerRun {
   const FillWith with_;
   const FillerLimits& limits_;
   Deadline until_;
+  std::optional<FolderForFiles> folder_;  // outlives the process, which writes to it
   std::optional<WorkerProcess> process_;
 };
 
