@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 
@@ -75,6 +76,25 @@ TEST_CASE("domains of several shells are filled: around bodies, inside of them, 
   FillReport report;
   fill(both(shapes::icosphere(1, 2), shapes::icosphere(1, 2), {3, 0, 0}), 0.1, filler, &report);
   CHECK(report.tetrahedra > 2000);
+}
+
+TEST_CASE("bent faces are parted so that they leave no valley for flat tetrahedra", "[no_races]") {
+  ::setenv("VDB_OFFSET_MODULES", test::modules_path().c_str(), 1);
+  // Across, it is an ellipse that turns along the tube.
+  constexpr std::uint32_t kAround = 16, kAlong = 20;
+  Polygons tube;
+  for (std::uint32_t i = 0; i <= kAlong; ++i)
+    for (std::uint32_t j = 0; j < kAround; ++j) {
+      const double x = 0.15 * i, angle = 2 * M_PI * j / kAround, radius = 1 + 0.2 * std::sin(2 * angle + 2 * x);
+      tube.positions.emplace_back(x, radius * std::cos(angle), radius * std::sin(angle));
+      if (i == kAlong) continue;
+      const std::uint32_t a = i * kAround + j, b = i * kAround + (j + 1) % kAround;
+      tube.corners.insert(tube.corners.end(), {a, b, b + kAround, a + kAround});
+      tube.face_begin.push_back(static_cast<std::uint32_t>(tube.corners.size()));
+    }
+  FillReport report;
+  fill(tube, -0.1, io::make_filler(FillWith::Netgen, {}), &report);
+  CHECK(report.scaled_jacobian.least > 0.05);  // 0.03 with valleys
 }
 
 TEST_CASE("bent faces are parted so that no cell is dented beyond its middle", "[no_races]") {

@@ -7,7 +7,6 @@
 #include "products/fill/front.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -18,7 +17,6 @@
 #include "products/fill/check_front.h"
 #include "products/fill/put_pyramids.h"
 #include "products/volume/cell_faces.h"
-#include "products/volume/cell_quality.h"
 #include "products/volume/foam_measures.h"
 
 namespace vdb_offset {
@@ -147,17 +145,15 @@ class FrontTaker {
       return;
     }
     PartedFace parted{cell, {face.begin(), face.end()}, parting_.of(face, cell)};
-    if (face.size() == 4) avoid_dents(parted);
+    if (face.size() == 4) part_well(parted);
     for (const auto& [a, b, c] : parted.triangles) add(a, b, c, cell);
     front_.parted.push_back(std::move(parted));
   }
 
-  /// Parts a bent quad along its other diagonal if the one that the wall has would dent the cell beyond its middle,
-  /// which solvers take for a face that is oriented wrongly.
-  void avoid_dents(PartedFace& parted) const {
-    // Share of the cell's volume that the pyramid on each triangle has at least; of a straight cell it is a twelfth.
-    // Not measured beside other shares.
-    constexpr double kLeastPyramid = 0.02;
+  /// Parts a quad along that diagonal beside which the smaller one of both pyramids on the cell's middle is larger.
+  /// Along the other one of a bent quad lies a valley: it dents the cell, and fillers put a flat tetrahedron into it.
+  void part_well(PartedFace& parted) const {
+    constexpr double kEqual = 1 + 1e-9;  // then the wall's own diagonal is taken
     const Vec3d middle = foam_centre(volume_, parted.cell);
     const auto least = [&](const std::vector<std::array<Index, 3>>& triangles) {
       double volume = std::numeric_limits<double>::infinity();
@@ -167,16 +163,13 @@ class FrontTaker {
       }
       return volume;
     };
-    const double own = least(parted.triangles);
-    if (volume_.cell_types[parted.cell] == CellType::Polyhedron ||
-        own >= kLeastPyramid * cell_volume(volume_, parted.cell))
-      return;
     const auto& q = parted.corners;
     const bool from_first = std::ranges::all_of(
         parted.triangles, [&](const auto& triangle) { return std::ranges::find(triangle, q[0]) != triangle.end(); });
     std::vector<std::array<Index, 3>> others{{q[0], q[1], q[2]}, {q[0], q[2], q[3]}};
     if (from_first) others = {{q[1], q[2], q[3]}, {q[1], q[3], q[0]}};
-    if (least(others) > own) parted.triangles = std::move(others);
+    if (const double own = least(parted.triangles); least(others) > std::max(own, own * kEqual))
+      parted.triangles = std::move(others);
   }
 
   /// Adds a triangle of the layers' boundary: seen from what is left, it runs the other way round.
