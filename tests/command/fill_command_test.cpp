@@ -50,12 +50,13 @@ TEST_CASE("--fill fills what layers leave, and --case writes what a solver needs
       "--case openfoam:case --speed 2 --patch wall=body --patch farfield=far:farfield --reynolds ";
   CHECK_THAT(shell(again + "100").err, !Catch::Contains("warning: case"));
   std::ofstream(shell.file("case/0/U")) << "mine";
-  std::filesystem::create_directories(shell.file("case/500"));
+  for (const char* const folder : {"case/500", "case/processor0"})
+    std::filesystem::create_directories(shell.file(folder));
   const Run kept = shell(again + "50");
   CHECK(kept.code == 0);
   CHECK(text_of(shell.file("case/0/U")) == "mine");
   CHECK_THAT(kept.err, Catch::Contains("rm case/0/U case/constant/transportProperties case/README)"));
-  CHECK_THAT(kept.err, Catch::Contains("rm -r case/500)"));
+  CHECK_THAT(kept.err, Catch::Contains("rm -r case/500 case/processor0)"));
 }
 
 TEST_CASE("--periodic couples the two borders of a period", "[command]") {
@@ -147,6 +148,8 @@ TEST_CASE("--fill says in one line what it cannot do", "[command]") {
         Wrong{"square.dat none.vtu --fill --farfield sphere:0.1L LAYERS", 2, "radius of at least"},
         Wrong{"square.dat none.vtu --fill --patch inlet=a:b LAYERS", 1, "PATCH=NAME:KIND"},
         Wrong{"square.dat none.vtu --fill --patch inlet=a LAYERS", 1, "expected one of wall, farfield"},
+        Wrong{"square.dat none.vtu --fill --patch 'wall=my hull' LAYERS", 1, "letters, digits"},
+        Wrong{"square.dat none.vtu --fill --patch wall=a --patch farfield=a LAYERS", 1, "another name for each"},
         Wrong{"square.dat none.vtu --fill --case openfoam:c --reynolds 1 LAYERS", 1, "c/constant/polyMesh"},
         Wrong{"square.dat c/constant/polyMesh --fill --case openfoam:c LAYERS", 1, "--viscosity"},
         Wrong{"square.dat none.vtu --fill --case fluent:c --reynolds 1 LAYERS", 1, "'openfoam:FOLDER' or 'su2:FOLDER'"},

@@ -43,6 +43,9 @@ void rename(const Request& request, std::vector<BoundaryPatch>& patches) {
     patch->name = asked.name;
     if (asked.kind) patch->kind = *asked.kind;
   }
+  for (const PatchRequest& asked : request.patches)
+    if (std::ranges::count(patches, asked.name, &BoundaryPatch::name) > 1)
+      throw InvalidOption(fmt::format("--patch: expected another name for each patch, got '{}' for two", asked.name));
 }
 
 /// \throw InvalidOption where it is not known what flows through a side
@@ -63,7 +66,7 @@ void require_kinds(const VolumeMesh& mesh, const std::vector<BoundaryPatch>& ren
 /// Names as a shell takes them.
 std::string shell_words(const std::vector<std::string>& names) {
   std::string words;
-  for (const std::string& name : names) words.append(1, ' ').append(shell_word(name));
+  for (const std::string& name : names) words.append(name.starts_with('-') ? " ./" : " ").append(shell_word(name));
   return words;
 }
 

@@ -33,7 +33,14 @@ constexpr std::uint64_t kMostOfFilling = std::uint64_t{1} << 40;
 class FolderForFiles {
  public:
   FolderForFiles() {
-    std::string name = (std::filesystem::temp_directory_path() / "vdb_offset-XXXXXX").string();
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / "vdb_offset-XXXXXX").string();
+    if (error || name.find_first_of("'\"\\\n") != std::string::npos) {
+      const char* const asked = std::getenv("TMPDIR");
+      throw ReadError(
+          fmt::format("TMPDIR: expected a folder for a filler's files, without quotes in its name, got '{}'",
+                      asked == nullptr ? "" : asked));
+    }
     if (!::mkdtemp(name.data())) throw WriteError(name + ": cannot be made: " + std::strerror(errno));
     folder_.emplace(name, Temporary::Kind::Folder);
     // What TetGen or gmsh reads and writes goes too where a signal ends this process, which removes no folder that is

@@ -154,16 +154,18 @@ class OpenFoamCase {
   Vec3d direction_;
 };
 
-/// Folders of times after the start, with results.
-std::vector<std::string> times_in(const std::string& folder) {
-  std::vector<std::string> times;
+/// Folders of times after the start, with results, and those of the parts of a mesh that was parted for processors.
+std::vector<std::string> results_in(const std::string& folder) {
+  std::vector<std::string> results;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::optional<double> time = decimal<double>(entry.path().filename().string());
-    if (time && *time > 0 && entry.is_directory()) times.push_back(entry.path().string());
+    const std::string name = entry.path().filename().string();
+    const std::optional<double> time = decimal<double>(name);
+    if (((time && *time > 0) || name.starts_with("processor")) && entry.is_directory())
+      results.push_back(entry.path().string());
   }
-  std::sort(times.begin(), times.end());
-  return times;
+  std::sort(results.begin(), results.end());
+  return results;
 }
 
 }  // namespace
@@ -180,7 +182,7 @@ CaseFiles write_openfoam_case(const std::string& folder, std::span<const CasePat
                             {"system/fvSolution", texts.solution()},
                             {"README", texts.readme()}};
   CaseFiles all = write_where_missing(folder, files);
-  all.results = times_in(folder);
+  all.results = results_in(folder);
   return all;
 }
 

@@ -15,6 +15,15 @@
 namespace vdb_offset::tool {
 namespace {
 
+/// What all formats and solvers take for a name as it is.
+bool is_word(const std::string& name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto is_part = [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-';
+  };
+  return is_letter(name.front()) && std::ranges::all_of(name, is_part);
+}
+
 PatchRequest parse_patch(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.rfind(':');
   const bool has_kind = colon != std::string::npos && equals != std::string::npos && colon > equals;
@@ -36,6 +45,10 @@ PatchRequest parse_patch(const std::string& text) {
       fmt::format("--patch: expected PATCH=NAME or PATCH=NAME:KIND, with a kind 'wall', 'inlet', 'outlet', 'symmetry' "
                   "or 'farfield', got '{}'",
                   text));
+  require(
+      is_word(request.name),
+      fmt::format("--patch: expected a name of letters, digits and . _ + - that begins with a letter or _, got '{}'",
+                  request.name));
   return request;
 }
 
