@@ -87,6 +87,7 @@ std::vector<std::vector<std::size_t>> parts_of(const FillDomain& domain, const S
     around->push_back(s);
   }
   std::vector<std::vector<std::size_t>> all;
+  all.reserve(parts.size());
   for (auto& [outer, part] : parts) all.push_back(std::move(part));
   return all;
 }
