@@ -186,6 +186,20 @@ TEST_CASE("patches that cannot be are refused before the mesh is filled, all at 
   CHECK(unknown.code == 1);
   for (const char* const says : {"sides_1 (in x = 0)", "sides_2 (in x = 4)", "--patch sides_1=inlet:inlet"})
     CHECK_THAT(unknown.err, Catch::Contains(says));
+  // Two patches exchange their names: each stays what it was.
+  const std::string swapped = " --fill-with tetgen --patch sides_1=sides_2:inlet --patch sides_2=sides_1:outlet";
+  if (std::system("command -v tetgen >/dev/null 2>&1") == 0) {
+    CHECK(shell("pipe.obj swapped/constant/polyMesh --layers 2 --total-thickness=-0.1 --fill --case openfoam:swapped "
+                "--reynolds 20" +
+                swapped)
+              .code == 0);
+    CHECK_THAT(text_of(shell.file("swapped/0/p")), Catch::Contains("sides_2 { type zeroGradient; }"));
+    CHECK_THAT(text_of(shell.file("swapped/0/p")), Catch::Contains("sides_1 { type fixedValue;"));
+  }
+  using Kind = BoundaryPatch::Kind;
+  for (const auto& patches : {std::vector<io::CasePatch>{{"in let", Kind::Inlet}},
+                              std::vector<io::CasePatch>{{"end", Kind::Inlet}, {"end", Kind::Outlet}}})
+    CHECK_THROWS_AS(io::write_openfoam_case(shell.file("none"), patches, {.viscosity = 1}), InvalidInput);
   const Run misnamed = shell(layers + "--patch inlet=a");
   CHECK(misnamed.code == 1);
   CHECK_THAT(misnamed.err, Catch::Contains("expected one of wall, sides_1, sides_2, got 'inlet'"));

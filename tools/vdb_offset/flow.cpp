@@ -28,20 +28,20 @@ double longest_side(PolygonView mesh) {
 
 using Kind = BoundaryPatch::Kind;
 
-/// Patches as are asked for. \throw InvalidOption
+/// Patches as are asked for, which may exchange their names. \throw InvalidOption
 void rename(const Request& request, std::vector<BoundaryPatch>& patches) {
+  std::vector<std::string> names;
+  names.reserve(patches.size());
+  for (const BoundaryPatch& each : patches) names.push_back(each.name);
   for (const PatchRequest& asked : request.patches) {
-    const auto patch = std::ranges::find(patches, asked.patch, &BoundaryPatch::name);
-    if (patch == patches.end()) {
-      std::vector<std::string> names;
-      names.reserve(patches.size());
-      for (const BoundaryPatch& each : patches) names.push_back(each.name);
+    const auto found = std::ranges::find(names, asked.patch);
+    if (found == names.end())
       throw InvalidOption(fmt::format("--patch: expected one of {}, got '{}'", fmt::join(names, ", "), asked.patch));
-    }
-    if (asked.kind && patch->kind == Kind::Periodic)
+    BoundaryPatch& patch = patches[static_cast<std::size_t>(found - names.begin())];
+    if (asked.kind && patch.kind == Kind::Periodic)
       throw InvalidOption(fmt::format("--patch: expected a name alone for {}, which is periodic", asked.patch));
-    patch->name = asked.name;
-    if (asked.kind) patch->kind = *asked.kind;
+    patch.name = asked.name;
+    if (asked.kind) patch.kind = *asked.kind;
   }
   for (const PatchRequest& asked : request.patches)
     if (std::ranges::count(patches, asked.name, &BoundaryPatch::name) > 1)

@@ -37,8 +37,9 @@ struct CaseFiles {
 
 /// Writes a case for OpenFOAM's simpleFoam, steady and laminar, into a folder that has the mesh in constant/polyMesh:
 /// fields with conditions by the patches' kinds, schemes and solvers that suit layers and tetrahedra, forces on the
-/// walls, and a README of how to run it. \throw InvalidInput for a viscosity that is not above 0, and for patches of
-/// kind Side, which say nothing of the flow; WriteError
+/// walls, and a README of how to run it. \throw InvalidInput for a viscosity that is not above 0, for patches of kind
+/// Side, which say nothing of the flow, and for names that a file of the mesh has otherwise (is_patch_word()), or that
+/// two patches have; WriteError
 VDB_OFFSET_API CaseFiles write_openfoam_case(const std::string& folder, std::span<const CasePatch> patches,
                                              const Flow& flow);
 

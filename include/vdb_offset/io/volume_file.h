@@ -46,6 +46,10 @@ struct VolumeWriteResult {
 /// not fit each other; WriteError.
 VDB_OFFSET_API VolumeWriteResult write_volume(const std::string& path, VolumeMesh mesh);
 
+/// Whether files keep a patch's name as it is, if no other patch has it: ASCII letters, digits and _ - + . alone, a
+/// letter or _ first, at most 255 bytes (in .cgns, 32 are kept).
+VDB_OFFSET_API bool is_patch_word(const std::string& name);
+
 enum class StructuredFormat : std::uint8_t { Vts, Plot3d };
 
 /// The format that a path's ending stands for: .vts or .xyz, in any case.

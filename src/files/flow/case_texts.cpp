@@ -6,8 +6,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <system_error>
 
+#include "vdb_offset/io/volume_file.h"
 #include "vdb_offset/output_files.h"
 #include "vdb_offset/run.h"
 
@@ -32,8 +34,13 @@ void require_flow(std::span<const CasePatch> patches, const Flow& flow) {
     if (patch.kind == BoundaryPatch::Kind::Side) unknown.push_back(patch.name);
   if (!unknown.empty())
     throw InvalidInput(
-        fmt::format("case: expected to know what flows through each patch, got sides of which that is not known: {}",
+        fmt::format("case: expected inlets, outlets, walls, planes of symmetry or a farfield, got sides: {}",
                     fmt::join(unknown, ", ")));
+  std::set<std::string> names;
+  for (const CasePatch& patch : patches)
+    if (!is_patch_word(patch.name) || !names.insert(patch.name).second)
+      throw InvalidInput(fmt::format(
+          "case: expected patches with names that differ, of letters, digits and . _ + -, got '{}'", patch.name));
 }
 
 Vec3d direction_of(const Flow& flow) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "vdb_offset/io/volume_file.h"
 #include "volume/volume_writers.h"
 
 // What the writers of several libraries need: apart from all else, as modules have copies of it.
@@ -20,6 +21,8 @@ std::string as_word(const std::string& name) {
 }
 
 }  // namespace
+
+bool is_patch_word(const std::string& name) { return name.size() <= kLongestWord && as_word(name) == name; }
 
 bool has_polyhedra(const VolumeMesh& mesh) {
   return std::find(mesh.cell_types.begin(), mesh.cell_types.end(), CellType::Polyhedron) != mesh.cell_types.end();

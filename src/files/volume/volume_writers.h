@@ -36,8 +36,10 @@ void require_standard_cells(const std::string& path, const VolumeMesh& mesh, con
 /// Makes words distinct: of equal ones, the later ones end in _2, _3 ... They have at most `longest` bytes.
 std::vector<std::string> distinct_words(std::span<const std::string> words, std::size_t longest);
 
+constexpr std::size_t kLongestWord = 255;  // bytes
+
 /// The patches' names as every format can hold them: ASCII letters, digits and _ - + . alone, a letter or _ first, at
 /// most `longest` bytes, and no two alike.
-std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest = 255);
+std::vector<std::string> patch_words(const VolumeMesh& mesh, std::size_t longest = kLongestWord);
 
 }  // namespace vdb_offset::io

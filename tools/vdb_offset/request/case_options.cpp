@@ -2,7 +2,6 @@
 // The options of patches, of flows and of cases for solvers.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -11,18 +10,10 @@
 #include "request/command_line.h"
 #include "request/offset_options.h"
 #include "request/option_values.h"
+#include "vdb_offset/io/volume_file.h"
 
 namespace vdb_offset::tool {
 namespace {
-
-/// What all formats and solvers take for a name as it is.
-bool is_word(const std::string& name) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  const auto is_part = [&](char c) {
-    return is_letter(c) || (c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-';
-  };
-  return is_letter(name.front()) && std::ranges::all_of(name, is_part);
-}
 
 PatchRequest parse_patch(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.rfind(':');
@@ -46,7 +37,7 @@ PatchRequest parse_patch(const std::string& text) {
                   "or 'farfield', got '{}'",
                   text));
   require(
-      is_word(request.name),
+      io::is_patch_word(request.name),
       fmt::format("--patch: expected a name of letters, digits and . _ + - that begins with a letter or _, got '{}'",
                   request.name));
   return request;
