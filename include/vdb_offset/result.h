@@ -131,17 +131,20 @@ struct ExactFacts {
 /// What of a CAD model's faces became faces of a file.
 struct CadFileFacts {
   enum class Made {
-    Solid,   ///< As many solids as the source has: valid, closed and at the distance as far as samples show.
-    Shells,  ///< The same of a source that is no solid.
-    Faces,   ///< Faces that are good, and not all of the source's offset.
-    Facets,  ///< Solids of triangles.
+    Solid,     ///< Solids: valid, closed and at the distance as far as samples show.
+    Shells,    ///< The same of a source that is no solid.
+    Hybrid,    ///< Valid solids or shells, as closed as the source, of exact faces and of triangles of the offset mesh.
+    Doubtful,  ///< The same, but some of it crosses itself or lies on the wrong side of the source; gaps say so.
   };
-  Made made = Made::Faces;
+  Made made = Made::Hybrid;
   /// Faces of the source: that stay what they are (plane, cylinder, cone, sphere, torus), that are fitted, that the
-  /// distance swallows, and that could not be made.
-  std::size_t kept = 0, fitted = 0, swallowed = 0, missing = 0;
-  std::size_t held = 0;   ///< Faces of the source that are held back, as fronts meet or obstacles are near.
-  double least_held = 1;  ///< The least share of its distance that a point of these goes.
+  /// distance swallows, that are triangles, at least in part, and that are of bodies which could not be made.
+  std::size_t kept = 0, fitted = 0, swallowed = 0, faceted = 0, missing = 0;
+  std::size_t triangles = 0;  ///< Faces of the result that are triangles of the offset mesh.
+  double exact_share = 1;     ///< Of the area of bodies that have such, by the offset mesh: what is of exact faces.
+  std::size_t vanished = 0;   ///< Solids of which nothing is left.
+  std::size_t held = 0;       ///< Faces of the source that are held back, as fronts meet or obstacles are near.
+  double least_held = 1;      ///< The least share of its distance that a point of these goes.
   /// How near it is to obstacles, to 1 % of the distance, world units; none: there are none, or it is not whole.
   std::optional<double> obstacle_gap;
   double fit_error = 0;           ///< Of fitted faces, the most, world units.

@@ -67,12 +67,17 @@ CadFileFacts facts_of(CadWritten&& written) {
   CadFileFacts facts;
   facts.made = written.made == CadMade::Solid    ? CadFileFacts::Made::Solid
                : written.made == CadMade::Shells ? CadFileFacts::Made::Shells
-               : written.made == CadMade::Facets ? CadFileFacts::Made::Facets
-                                                 : CadFileFacts::Made::Faces;
+               : written.made == CadMade::Hybrid ? CadFileFacts::Made::Hybrid
+                                                 : CadFileFacts::Made::Doubtful;
   facts.kept = written.kept;
   facts.fitted = written.fitted;
   facts.swallowed = written.swallowed;
+  facts.faceted = written.faceted;
   facts.missing = written.missing;
+  facts.triangles = written.triangles;
+  const double area = written.exact_area + written.flat_area;
+  if (area > 0) facts.exact_share = written.exact_area / area;
+  facts.vanished = written.vanished;
   facts.held = written.held;
   facts.least_held = written.least_held;
   if (written.obstacle_gap >= 0) facts.obstacle_gap = written.obstacle_gap;
@@ -122,17 +127,11 @@ CadFileFacts write_cad(const std::string& path, const MeshFile& source, const Ca
     for (std::size_t f = 0; f < how.obstacles.face_count(); ++f)
       triangulate(how.obstacles.positions, how.obstacles.face(f), write.obstacle_triangles);
   }
-  write.faceted = how.faceted;
-  if (how.faceted) {
-    write.positions.assign(positions.begin(), positions.end());
-    write.triangles = model->mesh().triangles;
-  }
+  if (!how.exact) write.positions.assign(positions.begin(), positions.end());
   CadWritten written = model->write(write, how.progress);
-  if (written.made == CadMade::Nothing)
-    throw NoCadModel(
-        fmt::format("{}: expected faces of a CAD model that can be offset, got none{}{} (--faceted writes "
-                    "triangles)",
-                    path, written.gaps.empty() ? "" : ": ", written.gaps.empty() ? "" : written.gaps.front()));
+  if (written.made == CadMade::Nothing || (how.exact && written.missing > 0))
+    throw NoCadModel(fmt::format("{}: expected a CAD model that can be offset{}, got one that cannot: {}", path,
+                                 how.exact ? " exactly" : "", fmt::join(written.gaps, "; ")));
   write_pieces(path, {1, [bytes = std::move(written.bytes)](std::size_t) { return bytes; }});
   return facts_of(std::move(written));
 }

@@ -40,12 +40,6 @@ Written write(const std::string& name, double distance, const std::string& outpu
   return written;
 }
 
-io::CadWriting faceted() {
-  io::CadWriting how;
-  how.faceted = true;
-  return how;
-}
-
 double volume_of_mesh(const Polygons& mesh) {
   double six = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -162,11 +156,11 @@ TEST_CASE("cad written: a model in inches stays one", "[cad]") {
   CHECK(volume_of_mesh(write("inch.stp", 0.1, "inch.brep").again.polygons) == Approx(2.2 * 3.2 * 4.2));
 }
 
-TEST_CASE("cad written: bodies that would get into each other are not called whole", "[cad]") {
+TEST_CASE("cad written: bodies that get into each other are written each by itself, and reported", "[cad]") {
   const Written written = write("touching.step", 1, "into.step");
-  CHECK(written.facts.made == Made::Faces);
+  CHECK(written.facts.made == Made::Solid);
   REQUIRE_FALSE(written.facts.gaps.empty());
-  CHECK(written.facts.gaps.back() == "bodies get into each other");
+  CHECK(written.facts.gaps.back() == "bodies get into each other; each is written by itself");
 }
 
 TEST_CASE("cad written: bosses that grow into each other become one", "[cad]") {
@@ -210,7 +204,10 @@ TEST_CASE("cad written: walls of a hollow block are good to the last, and not wh
   }
   for (const double d : {-2.5, -2.51, -2.6}) {
     INFO(d);
-    CHECK(write("hollow.step", d, "gone.step").facts.made == Made::Faces);
+    const Written gone = write("hollow.step", d, "gone.step");
+    CHECK(gone.facts.made != Made::Solid);
+    REQUIRE_FALSE(gone.facts.gaps.empty());
+    CHECK_THAT(gone.facts.gaps.front(), Catch::Contains("walls are gone"));
   }
 }
 
@@ -283,11 +280,14 @@ TEST_CASE("cad written: what is placed has its names again", "[cad]") {
   }
 }
 
-TEST_CASE("cad written: what falls apart is not called whole", "[cad]") {
-  // Two halves of a plate, that hang together by walls of 1.
+TEST_CASE("cad written: what falls apart is two solids", "[cad]") {
+  // Two halves of a plate, that hang together by walls of 1 beside a hole of 9.
+  const double r = 9.75, half = 9.25;
+  const double hole = 2 * (half * std::sqrt(r * r - half * half) + r * r * std::asin(half / r));
   const Written written = write("waist.step", -0.75, "apart.step");
-  CHECK(written.facts.made == Made::Faces);
-  CHECK_FALSE(written.facts.gaps.empty());
+  CHECK(written.facts.made == Made::Solid);
+  CHECK(written.facts.volume == Approx((38.5 * 18.5 - hole) * 3.5).epsilon(1e-6));
+  CHECK(volume_of_mesh(written.again.polygons) == Approx(written.facts.volume).epsilon(1e-3));
 }
 
 TEST_CASE("cad written: a trimming curve that leads past its edge is mended", "[cad]") {
@@ -297,13 +297,6 @@ TEST_CASE("cad written: a trimming curve that leads past its edge is mended", "[
   const Written written = write("pit.brep", d, "pit.step");
   CHECK(written.facts.made == Made::Solid);
   CHECK(written.facts.volume == Approx(21.8 * 21.8 * 10.05 - std::numbers::pi * wide * wide * deep / 3).epsilon(1e-5));
-}
-
-TEST_CASE("cad written: triangles where they are asked for and nothing else is to be had", "[cad]") {
-  // So far inward that nothing of the hole's wall is left of the block.
-  const Written written = write("block.step", -6, "facets.step", faceted());
-  CHECK(written.facts.made != Made::Faces);
-  CHECK(written.again.polygons.face_count() > 0);
 }
 
 TEST_CASE("cad written: what cannot be is told in a line", "[cad]") {

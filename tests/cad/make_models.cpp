@@ -54,6 +54,8 @@
 #include <string>
 #include <vector>
 
+#include "small_models.h"
+
 namespace {
 
 std::string folder;
@@ -430,6 +432,11 @@ int main(int count, char** words) {
   write_step(curves(), "curves.step", "MM");
   write_brep(open_box(), "open.brep");
   write_brep(inside_out(), "inside_out.brep");
+  write_step(rounded_block(), "rounded_block.step", "MM");
+  write_step(dumbbell(), "dumbbell.step", "MM");
+  write_step(pyramid(), "pyramid.step", "MM");
+  write_step(block_and_plate(), "block_and_plate.step", "MM");
+  write_iges(turned_cube(), "turned_cube.igs");
   write_iges(BRepPrimAPI_MakeBox(25.4, 2 * 25.4, 3 * 25.4).Shape(), "faces.igs");
   write_assembly("assembly.step");
   write_robot("robot.step");

@@ -600,7 +600,7 @@ TEST_CASE("command: what options need and exclude holds for the line and a file 
         {"--distance-z 1", "--distance-z needs --distance-xy"},
         {"--layers 2 --heights h.txt --growth 2", "--growth and --heights exclude each other"},
         {"--distance-xy 1 --distance-z 1 --distance-of up:1", "--distance-of and --distance-xy exclude each other"},
-        {"-d 1 --faceted", "--faceted needs an output that ends in .step, .stp or .brep"}})
+        {"-d 1 --exact", "--exact needs an output that ends in .step, .stp or .brep"}})
     check_failure(shell, std::string("sphere.obj out.obj ") + arguments, 1, message);
 }
 

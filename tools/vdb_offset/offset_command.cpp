@@ -126,20 +126,25 @@ std::optional<Products> try_outputs(const Job& job, const Outcome& outcome, cons
   }
 }
 
-/// Names the CAD models of which not all could be made. Returns false if there are none.
+/// Names what CAD models lack. Returns false if none lacks a body, and none is doubtful.
 bool report_cad_gaps(const Job& job, std::span<const std::optional<Products>> all) {
   bool any = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
     any |= !all[i];
-    if (!all[i] || !all[i]->cad) continue;
+    if (!all[i] || !all[i]->cad || all[i]->cad->gaps.empty()) continue;
     const CadFileFacts& cad = *all[i]->cad;
-    if (cad.made == CadFileFacts::Made::Facets && !job.request.quiet)
-      report_problem(fmt::format("{}: of triangles, as no other model could be made: {}", job.files.outputs[i].mesh,
-                                 fmt::join(cad.gaps, "; ")));
-    if (cad.made != CadFileFacts::Made::Faces) continue;
-    any = true;
-    report_problem(fmt::format("{}: no whole model could be made: {} (--faceted writes one of triangles)",
-                               job.files.outputs[i].mesh, fmt::join(cad.gaps, "; ")));
+    const std::string gaps = fmt::format("{}", fmt::join(cad.gaps, "; "));
+    const bool is_doubtful = cad.made == CadFileFacts::Made::Doubtful;
+    any |= cad.missing > 0 || is_doubtful;
+    if (is_doubtful)
+      report_problem(fmt::format("{}: not right everywhere: {}. Use a smaller distance or --deflection",
+                                 job.files.outputs[i].mesh, gaps));
+    else if (cad.missing > 0)
+      report_problem(
+          fmt::format("{}: bodies of {} faces could not be made: {}", job.files.outputs[i].mesh, cad.missing, gaps));
+    else if (!job.request.quiet)
+      report_problem(fmt::format("{}: {}{}", job.files.outputs[i].mesh, gaps,
+                                 cad.triangles > 0 ? " (--exact refuses triangles)" : ""));
   }
   return any;
 }

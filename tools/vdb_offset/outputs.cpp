@@ -147,7 +147,7 @@ io::CadWriting cad_writing(const Job& job) {
   how.fit_tolerance = request.fit_tolerance;
   how.only = job.options.only;
   how.thick = job.shell;
-  how.faceted = request.faceted;
+  how.exact = request.exact;
   how.obstacles = job.options.obstacles;
   how.clearance = job.options.clearance;
   how.holds_back = request.collision == Collision::Limit || how.obstacles.face_count() > 0;

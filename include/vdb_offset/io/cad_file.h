@@ -36,7 +36,7 @@ struct VDB_OFFSET_API CadDistances {
   double blend = 0;  ///< Over how far distances change across smooth edges, world units: as FaceDistances::blend.
 };
 
-/// No face of the offset of a CAD model could be made.
+/// The offset of a CAD model could not be made.
 struct VDB_OFFSET_API NoCadModel : Error {
   using Error::Error;
 };
@@ -51,7 +51,7 @@ struct CadWriting {
   bool holds_back = false;
   PolygonView obstacles;      ///< With holds_back: meshes that the result must not come nearer to than `clearance`.
   double clearance = 0;       ///< World units.
-  bool faceted = false;       ///< Where no solid comes of the faces, write one of triangles.
+  bool exact = false;         ///< Write exact faces or nothing: no triangles where these fail.
   ProgressCallback progress;  ///< See run.h; all of it is Stage::Write. May cancel.
 };
 
@@ -62,10 +62,10 @@ VDB_OFFSET_API bool is_cad_output(Format format);
 VDB_OFFSET_API std::span<const std::uint32_t> cad_face_of(const MeshFile& source);
 
 /// Writes the offset of a CAD model as one, through a temporary file that is renamed at the end: each face becomes one
-/// over the same (u, v), and where these do not make a valid solid, faces or triangles. The file is read again before.
-/// \param positions of the offset mesh
-/// \throw InvalidInput if the source is no CAD model, or a part of one of its faces has another distance; NoCadModel
-/// if nothing could be made; WriteError
+/// over the same (u, v), and where such faces fail, triangles of the offset mesh take their place, in one solid with
+/// the others. The file is read again before. \param positions of the offset mesh; empty: as if `how.exact` were asked
+/// for \throw InvalidInput if the source is no CAD model, or a part of one of its faces has another distance;
+/// NoCadModel if nothing could be made; WriteError
 VDB_OFFSET_API CadFileFacts write_cad(const std::string& path, const MeshFile& source, const CadDistances& distances,
                                       std::span<const Vec3d> positions, const CadWriting& how = {});
 

@@ -40,13 +40,17 @@ struct Verdict {
   std::size_t samples = 0;  ///< How many points these are of.
 };
 
+/// Whether an inward offset of a solid is empty: every sampled point of the source, moved by the distance, is nearer to
+/// another part of it.
+bool leaves_nothing(const TopoDS_Shape& source, double distance);
+
 /// The volume of a closed shape, below 0 if it is turned inside out.
 double volume_of(const TopoDS_Shape& shape);
 
-/// Judges an offset by what it is, not by how it was made: valid topology; as many solids and shells as the source, and
-/// as closed; its tessellation is closed if the source is, no triangles of it cross, and it goes round its material
-/// once, so that none of its walls have passed each other. Where all faces go to one side, sampled points of it are on
-/// that side of the source.
+/// Judges an offset by what it is, not by how it was made: valid topology; as many solids and shells as the source, if
+/// it is not an even one of solids, and as closed; its tessellation is closed if the source is, no triangles of it
+/// cross, and it goes round its material once, so that none of its walls have passed each other. Where all faces go to
+/// one side, sampled points of it are on that side of the source.
 ///
 /// Of an even offset, too: every such point is at least the distance from the source, and no farther but over edges and
 /// vertices; every point of the source whose offset is no nearer to another part of the source has it in the result.

@@ -44,6 +44,11 @@ class Soup {
 
   /// Tessellates a copy of the shape: borders of faces more closely than what lies between them.
   Soup(const TopoDS_Shape& shape, double border_deflection, double deflection, double angle);
+  /// The triangles that are judged of a result. \param distance the largest
+  static Soup of_result(const TopoDS_Shape& shape, double distance) {
+    constexpr double kAngle = 0.3;  // between normals at neighbouring corners, in radians
+    return {shape, 0.01 * distance, 0.02 * distance, kAngle};
+  }
   /// Triangles without surfaces: no point of them can be corrected. \param faces of each triangle; empty: all are of
   /// one
   Soup(const std::vector<gp_Pnt>& points, const std::vector<std::array<std::uint32_t, 3>>& triangles,

@@ -156,10 +156,7 @@ std::string pack(const WriteCad& write) {
   packer.text(write.format);
   put_distances(packer, write.of_face);
   packer.value(write.distance).value(write.diagonal).value(write.blend).value(write.fit_tolerance);
-  packer.value(std::uint8_t{write.thick})
-      .value(std::uint8_t{write.faceted})
-      .list(write.positions)
-      .list(write.triangles);
+  packer.value(std::uint8_t{write.thick}).list(write.positions);
   packer.value(std::uint8_t{write.held}).value(write.clearance);
   packer.list(write.obstacle_positions).list(write.obstacle_triangles);
   return packer.take();
@@ -175,28 +172,37 @@ WriteCad unpack_write(std::string_view bytes) {
   write.blend = unpacker.value<double>();
   write.fit_tolerance = unpacker.value<double>();
   write.thick = unpacker.value<std::uint8_t>() != 0;
-  write.faceted = unpacker.value<std::uint8_t>() != 0;
   write.positions = unpacker.list<Vec3d>();
-  write.triangles = unpacker.list<std::array<std::uint32_t, 3>>();
   write.held = unpacker.value<std::uint8_t>() != 0;
   write.clearance = unpacker.value<double>();
   write.obstacle_positions = unpacker.list<Vec3d>();
   write.obstacle_triangles = unpacker.list<std::array<std::uint32_t, 3>>();
   unpacker.end();
-  require_corners(write.triangles, write.positions.size());
   require_corners(write.obstacle_triangles, write.obstacle_positions.size());
   return write;
 }
 
+namespace {
+
+/// Its numbers, as they are packed; of one that is constant or not.
+template <class Written>
+auto counts_of(Written& written) {
+  return std::array{&written.kept,    &written.fitted,    &written.swallowed, &written.faceted, &written.missing,
+                    &written.samples, &written.triangles, &written.vanished,  &written.held};
+}
+template <class Written>
+auto values_of(Written& written) {
+  return std::array{&written.obstacle_gap, &written.least_held, &written.fit_error,  &written.least,
+                    &written.most,         &written.volume,     &written.exact_area, &written.flat_area};
+}
+
+}  // namespace
+
 std::string pack(const CadWritten& written) {
   Packer packer;
   packer.text(written.bytes).value(written.made);
-  for (const std::uint64_t count :
-       {written.kept, written.fitted, written.swallowed, written.missing, written.held, written.samples})
-    packer.value(count);
-  for (const double value :
-       {written.obstacle_gap, written.least_held, written.fit_error, written.least, written.most, written.volume})
-    packer.value(value);
+  for (const std::uint64_t* count : counts_of(written)) packer.value(*count);
+  for (const double* value : values_of(written)) packer.value(*value);
   put_texts(packer, written.gaps);
   return packer.take();
 }
@@ -206,13 +212,9 @@ CadWritten unpack_written(std::string_view bytes) {
   CadWritten written;
   written.bytes = unpacker.text();
   written.made = unpacker.value<CadMade>();
-  require(written.made <= CadMade::Facets, "a file of no kind");
-  for (std::uint64_t* count :
-       {&written.kept, &written.fitted, &written.swallowed, &written.missing, &written.held, &written.samples})
-    *count = unpacker.value<std::uint64_t>();
-  for (double* value :
-       {&written.obstacle_gap, &written.least_held, &written.fit_error, &written.least, &written.most, &written.volume})
-    *value = unpacker.value<double>();
+  require(written.made <= CadMade::Doubtful, "a file of no kind");
+  for (std::uint64_t* count : counts_of(written)) *count = unpacker.value<std::uint64_t>();
+  for (double* value : values_of(written)) *value = unpacker.value<double>();
   written.gaps = take_texts(unpacker);
   unpacker.end();
   return written;

@@ -84,26 +84,29 @@ struct WriteCad {
   double clearance = 0;      ///< How far they stay away from obstacles.
   std::vector<Vec3d> obstacle_positions;
   std::vector<std::array<std::uint32_t, 3>> obstacle_triangles;
-  bool faceted = false;          ///< Write the triangles as faces where no solid comes of the faces.
-  std::vector<Vec3d> positions;  ///< Of the offset mesh, for that, with its triangles; else empty.
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Vec3d> positions;  ///< Of the offset mesh, for what exact faces fail at; empty: nothing is written then.
 };
 
 /// What a written file holds.
 enum class CadMade : std::uint32_t {
-  Nothing,  ///< No file: no face could be made.
-  Solid,    ///< As many solids as the source has, valid, closed and at the distance as far as 10,000 samples show.
-  Shells,   ///< The same of a source that is no solid.
-  Faces,    ///< Faces that are good, and not all of the source's offset.
-  Facets,   ///< Solids of triangles.
+  Nothing,   ///< No file.
+  Solid,     ///< Solids: valid, closed and at the distance as far as 10,000 samples show.
+  Shells,    ///< The same of a source that is no solid.
+  Hybrid,    ///< Solids or shells, valid and as closed as the source, of exact faces and of triangles.
+  Doubtful,  ///< The same, but some of it crosses itself or lies on the wrong side of the source; gaps say so.
 };
 
 struct CadWritten {
   std::string bytes;
   CadMade made = CadMade::Nothing;
-  std::uint64_t kept = 0, fitted = 0, swallowed = 0, missing = 0;  ///< Faces of the source.
-  std::uint64_t samples = 0;                                       ///< Points of the result that were measured.
-  std::uint64_t held = 0;         ///< Faces of the source that are held back where fronts meet.
+  /// Faces of the source; faceted ones are triangles, at least in part, and missing ones are of bodies that could not
+  /// be made.
+  std::uint64_t kept = 0, fitted = 0, swallowed = 0, faceted = 0, missing = 0;
+  std::uint64_t triangles = 0;           ///< Of the result.
+  double exact_area = 0, flat_area = 0;  ///< Of exact faces and of triangles, by the offset mesh; 0: without these.
+  std::uint64_t vanished = 0;            ///< Bodies of which nothing is left.
+  std::uint64_t samples = 0;             ///< Points of the result that were measured.
+  std::uint64_t held = 0;                ///< Faces of the source that are held back where fronts meet.
   double obstacle_gap = -1;       ///< The least distance from obstacles, in the file's unit; below 0: not measured.
   double least_held = 1;          ///< The least share of its distance that a point of them goes.
   double fit_error = 0;           ///< In the file's unit.

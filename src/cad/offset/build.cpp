@@ -74,21 +74,24 @@ class ShellBuilder {
  private:
   EdgeCurves curves_of(int e) {
     if (model_.edges[e].is_gone || model_.edges[e].kind == EdgeKind::Pole) return {};
-    const std::string name = "edge " + std::to_string(e + 1);
+    const auto trouble = [&](const std::string& what) {
+      built_.trouble.push_back("edge " + std::to_string(e + 1) + what);
+      built_.bad_edges.push_back(e);
+    };
     if (model_.edges[e].range[0] >= model_.edges[e].range[1] && !model_.edges[e].curve.IsNull()) {
-      built_.trouble.push_back(name + " shrinks to nothing");
+      trouble(" shrinks to nothing");
       return {};
     }
     EdgeCurves c;
     try {
       c = edge_curves(model_, e, tolerances_);
     } catch (const Standard_Failure& failure) {
-      built_.trouble.push_back(name + ": " + failure.GetMessageString());
+      trouble(std::string(": ") + failure.GetMessageString());
       return c;
     }
-    if (c.folds) built_.trouble.push_back(name + " folds over");
-    if (c.tolerance > 10 * tolerances_.gap + 2 * model_.edges[e].gap)
-      built_.trouble.push_back(name + ": the faces miss each other by " + std::to_string(c.tolerance));
+    if (c.folds) trouble(" folds over");
+    if (model_.edges[e].kind != EdgeKind::Chord && c.tolerance > 10 * tolerances_.gap + 2 * model_.edges[e].gap)
+      trouble(": the faces miss each other by " + std::to_string(c.tolerance));
     return c;
   }
 

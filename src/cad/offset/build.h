@@ -11,6 +11,7 @@ struct Built {
   TopoDS_Shape shell;                ///< Null if an edge has no curve.
   std::vector<TopoDS_Face> faces;    ///< By the number of the model's face; null for those that are gone.
   std::vector<std::string> trouble;  ///< What is not as it should be, in words.
+  std::vector<int> bad_edges;        ///< The numbers of the edges that it is about.
 };
 
 /// The shell of a placed model. Splines are cut at poles.

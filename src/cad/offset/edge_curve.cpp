@@ -12,6 +12,9 @@
 #include <Geom_Plane.hxx>
 #include <Geom_TrimmedCurve.hxx>
 #include <Precision.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array1OfPnt2d.hxx>
 #include <algorithm>
 #include <cmath>
 #include <gp_Circ.hxx>
@@ -331,10 +334,48 @@ EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& tr
   return r;
 }
 
+// A straight edge between two vertices, with straight trimming curves: its faces are as far from it as they are curved.
+EdgeCurves chord(const Model& model, const ModelEdge& e) {
+  const int one = e.half[0] >= 0 ? e.half[0] : e.half[1];
+  const bool forward = model.halves[one].forward;
+  const int from = model.halves[one].vertex, to = end_vertex(model, one);
+  const gp_Pnt a = model.vertices[forward ? from : to].point, b = model.vertices[forward ? to : from].point;
+  EdgeCurves r;
+  const gp_Lin line(a, gp_Dir(gp_Vec(a, b)));
+  r.curve = new Geom_Line(line);
+  r.last = a.Distance(b);
+  for (int i = 0; i < 2; i++) {
+    if (e.half[i] < 0) continue;
+    const HalfEdge& h = model.halves[e.half[i]];
+    const Handle(Geom_Surface)& surface = model.faces[h.face].offset.surface;
+    if (const auto plane = Handle(Geom_Plane)::DownCast(surface)) {
+      r.pcurves[i] = GeomAPI::To2d(r.curve, plane->Pln());
+    } else {
+      TColgp_Array1OfPnt2d poles(1, 2);
+      poles(1) = h.forward ? h.start : h.end;
+      poles(2) = h.forward ? h.end : h.start;
+      TColStd_Array1OfReal knots(1, 2);
+      knots(1) = 0;
+      knots(2) = r.last;
+      TColStd_Array1OfInteger multiplicities(1, 2);
+      multiplicities.Init(2);
+      r.pcurves[i] = new Geom2d_BSplineCurve(poles, knots, multiplicities, 1);
+    }
+    constexpr int kSteps = 8;
+    for (int k = 0; k <= kSteps; k++) {
+      const double t = r.last * k / kSteps;
+      const gp_Pnt2d uv = r.pcurves[i]->Value(t);
+      r.tolerance = std::max(r.tolerance, surface->Value(uv.X(), uv.Y()).Distance(ElCLib::Value(t, line)));
+    }
+  }
+  return r;
+}
+
 }  // namespace
 
 EdgeCurves edge_curves(const Model& model, int edge, const Tolerances& tolerances) {
   const ModelEdge& e = model.edges[edge];
+  if (e.kind == EdgeKind::Chord) return chord(model, e);
   const Tracer tracer(model, edge);
   EdgeCurves best;
   for (int spans = 2 * kFirstSpans; spans <= kMostSpans; spans *= 2) {

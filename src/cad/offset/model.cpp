@@ -74,7 +74,28 @@ void add_edges(Model& model, const TopTools_IndexedMapOfShape& edges) {
   }
 }
 
-// Vertices as rings of half-edges. Where a source's vertex has more than one ring, each becomes a vertex.
+}  // namespace
+
+void evaluate(const Geom_Curve& curve, double t, gp_Pnt& p, gp_Vec& tangent) {
+  const double inside = curve.IsPeriodic() ? t : std::clamp(t, curve.FirstParameter(), curve.LastParameter());
+  curve.D1(inside, p, tangent);
+  p.Translate(tangent * (t - inside));
+}
+
+int previous_drawn(const Model& model, int half) {
+  int h = model.halves[half].previous;
+  while (model.edges[model.halves[h].edge].kind == EdgeKind::Pole && h != half) h = model.halves[h].previous;
+  return h;
+}
+
+int next_drawn(const Model& model, int half) {
+  int h = model.halves[half].next;
+  while (model.edges[model.halves[h].edge].kind == EdgeKind::Pole && h != half) h = model.halves[h].next;
+  return h;
+}
+
+int end_vertex(const Model& model, int half) { return model.halves[model.halves[half].next].vertex; }
+
 void add_vertices(Model& model) {
   for (int start = 0; start < static_cast<int>(model.halves.size()); start++) {
     if (model.halves[start].vertex >= 0 || model.edges[model.halves[start].edge].kind == EdgeKind::Pole) continue;
@@ -106,32 +127,10 @@ void add_vertices(Model& model) {
     }
     const HalfEdge& h = model.halves[first];
     const ModelEdge& e = model.edges[h.edge];
-    v.source = e.curve->Value(h.forward ? e.first : e.last);
+    if (!e.curve.IsNull()) v.source = e.curve->Value(h.forward ? e.first : e.last);
     model.vertices.push_back(v);
   }
 }
-
-}  // namespace
-
-void evaluate(const Geom_Curve& curve, double t, gp_Pnt& p, gp_Vec& tangent) {
-  const double inside = curve.IsPeriodic() ? t : std::clamp(t, curve.FirstParameter(), curve.LastParameter());
-  curve.D1(inside, p, tangent);
-  p.Translate(tangent * (t - inside));
-}
-
-int previous_drawn(const Model& model, int half) {
-  int h = model.halves[half].previous;
-  while (model.edges[model.halves[h].edge].kind == EdgeKind::Pole && h != half) h = model.halves[h].previous;
-  return h;
-}
-
-int next_drawn(const Model& model, int half) {
-  int h = model.halves[half].next;
-  while (model.edges[model.halves[h].edge].kind == EdgeKind::Pole && h != half) h = model.halves[h].next;
-  return h;
-}
-
-int end_vertex(const Model& model, int half) { return model.halves[model.halves[half].next].vertex; }
 
 Model read_model(const TopoDS_Shape& shell, double off) {
   Model model;

@@ -29,7 +29,7 @@ struct HalfEdge {
   gp_Pnt2d start, end;          ///< (u, v) on the offset surface, as the half-edge goes.
 };
 
-enum class EdgeKind { Sharp, Smooth, Pole };
+enum class EdgeKind { Sharp, Smooth, Pole, Chord };  ///< A chord is straight, and no edge of the source.
 
 struct ModelEdge {
   EdgeKind kind = EdgeKind::Sharp;
@@ -87,6 +87,10 @@ void evaluate(const Geom_Curve& curve, double t, gp_Pnt& p, gp_Vec& tangent);
 /// Takes a shell apart. `failure` says if it is no manifold, or has faces without wires. Trimming curves that lead more
 /// than `off` past their edges are mended.
 Model read_model(const TopoDS_Shape& shell, double off);
+
+/// Adds the vertices of half-edges that know those before and after them, and their twins: rings in the order of their
+/// first half-edges. Where a source's vertex has more than one ring, each becomes a vertex.
+void add_vertices(Model& model);
 
 /// The half-edge before it round its face, poles left out.
 int previous_drawn(const Model& model, int half);

@@ -44,11 +44,7 @@ std::size_t count_faces(const TopoDS_Shape& shell) {
 
 OffsetCadResult offset_all(const OffsetCadRequest& request) {
   OffsetCadResult result;
-  Tolerances tolerances;
-  tolerances.distance = std::abs(request.distance);
-  tolerances.fit = request.fit_tolerance > 0 ? request.fit_tolerance : 1e-4 * tolerances.distance;
-  tolerances.curve = std::max(1e-7, 1e-5 * tolerances.distance);
-  tolerances.gap = 2e-3 * tolerances.distance;
+  const Tolerances tolerances = tolerances_of(request);
   BRep_Builder builder;
   TopoDS_Compound all;
   builder.MakeCompound(all);
@@ -67,29 +63,21 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
   for (const TopoDS_Shape& piece : pieces) {
     std::vector<TopoDS_Shape> shells;
     for (TopExp_Explorer s(piece, TopAbs_SHELL); s.More(); s.Next()) {
-      Model model = read_model(s.Current(), tolerances.gap / 4);
       const std::size_t first_face = result.faces.size();
+      Model model = offset_faces(s.Current(), request, first_face);
+      report_progress(static_cast<double>(first_face) / all_faces);
       if (!model.failure.empty()) {
         result.gaps.push_back(model.failure);
         result.faces.resize(first_face + count_faces(s.Current()), CadFace::Missing);
         result.made_of.resize(result.faces.size());
         continue;
       }
-      for (std::size_t f = 0; f < model.faces.size(); f++) {
-        report_progress(static_cast<double>(result.faces.size()) / all_faces);
-        ModelFace& face = model.faces[f];
-        face.distance.constant = face.sign * request.distance;
-        if (!request.of_face.empty()) face.distance = towards(request.of_face[first_face + f], face.sign);
-        face.offset = offset_surface(face.surface, face.box, face.distance, sharp_sides(model, static_cast<int>(f)),
-                                     vertex_margin(request.distance), tolerances.fit);
+      for (const ModelFace& face : model.faces) {
         result.fit_error = std::max(result.fit_error, face.offset.error);
-        result.faces.push_back(face.offset.made == FaceMade::Kept     ? CadFace::Kept
-                               : face.offset.made == FaceMade::Fitted ? CadFace::Fitted
-                                                                      : CadFace::Swallowed);
+        result.faces.push_back(made_by(face.offset.made));
       }
       result.made_of.resize(result.faces.size());
       const std::size_t gaps_before = result.gaps.size();
-      classify_edges(model, tolerances);
       if (std::any_of(model.edges.begin(), model.edges.end(), [](const ModelEdge& e) { return e.is_step; }))
         result.gaps.emplace_back("distances of faces that are joined smoothly differ where they meet (--blend)");
       if (request.keeps_turned) arrange_turned(model, tolerances, result.gaps);
@@ -126,6 +114,33 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
 }
 
 }  // namespace
+
+CadFace made_by(FaceMade made) {
+  return made == FaceMade::Kept ? CadFace::Kept : made == FaceMade::Fitted ? CadFace::Fitted : CadFace::Swallowed;
+}
+
+Tolerances tolerances_of(const OffsetCadRequest& request) {
+  Tolerances tolerances;
+  tolerances.distance = std::abs(request.distance);
+  tolerances.fit = request.fit_tolerance > 0 ? request.fit_tolerance : 1e-4 * tolerances.distance;
+  tolerances.curve = std::max(1e-7, 1e-5 * tolerances.distance);
+  tolerances.gap = 2e-3 * tolerances.distance;
+  return tolerances;
+}
+
+Model offset_faces(const TopoDS_Shape& shell, const OffsetCadRequest& request, std::size_t first_face) {
+  const Tolerances tolerances = tolerances_of(request);
+  Model model = read_model(shell, tolerances.gap / 4);
+  for (std::size_t f = 0; f < model.faces.size() && model.failure.empty(); f++) {
+    ModelFace& face = model.faces[f];
+    face.distance.constant = face.sign * request.distance;
+    if (!request.of_face.empty()) face.distance = towards(request.of_face[first_face + f], face.sign);
+    face.offset = offset_surface(face.surface, face.box, face.distance, sharp_sides(model, static_cast<int>(f)),
+                                 vertex_margin(request.distance), tolerances.fit);
+  }
+  if (model.failure.empty()) classify_edges(model, tolerances);
+  return model;
+}
 
 OffsetCadResult offset_cad(const OffsetCadRequest& request) {
   try {

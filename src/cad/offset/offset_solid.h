@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "offset/offset_surface.h"
+#include "offset/place.h"
 
 namespace vdb_offset::cad {
 
@@ -19,17 +19,27 @@ struct OffsetCadRequest {
 };
 
 enum class CadKind { Solid, Shells, Faces };
-enum class CadFace { Kept, Fitted, Swallowed, Missing };
+enum class CadFace { Kept, Fitted, Swallowed, Missing, Faceted };  ///< The last: at least in part.
+
+CadFace made_by(FaceMade made);
 
 struct OffsetCadResult {
   TopoDS_Shape shape;  ///< Null if there is nothing good.
   CadKind kind = CadKind::Faces;
-  std::vector<CadFace> faces;         ///< How each face of the source was made.
-  std::vector<TopoDS_Shape> made_of;  ///< The face of the result for each face of the source; null if none.
-  double fit_error = 0;               ///< The worst of the fitted surfaces.
-  std::vector<std::string> steps;     ///< What was changed of the topology, in words.
-  std::vector<std::string> gaps;      ///< What is missing or not good, in words.
+  std::vector<CadFace> faces;            ///< How each face of the source was made.
+  std::vector<TopoDS_Shape> made_of;     ///< The face of the result for each face of the source; null if none.
+  double fit_error = 0;                  ///< The worst of the fitted surfaces.
+  double exact_area = 0, flat_area = 0;  ///< Of a hybrid, by its mesh: of exact faces, and of triangles.
+  std::size_t triangles = 0;             ///< Of a hybrid.
+  std::vector<std::string> steps;        ///< What was changed of the topology, in words.
+  std::vector<std::string> gaps;         ///< What is missing or not good, in words.
 };
+
+Tolerances tolerances_of(const OffsetCadRequest& request);
+
+/// A shell's topology with the offsets of its faces, and which of its edges are smooth. \param first_face how many
+/// faces of the request come before the shell's
+Model offset_faces(const TopoDS_Shape& shell, const OffsetCadRequest& request, std::size_t first_face);
 
 /// Offsets solids and shells as B-Rep: each face becomes a surface over the same (u, v), sharp edges are cut anew where
 /// two offset faces meet (mitered).

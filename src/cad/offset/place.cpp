@@ -193,6 +193,7 @@ void spread_vertex(Model& model, int vertex) {
   const auto set = [&](int half, bool is_start) {
     HalfEdge& h = model.halves[half];
     ModelEdge& e = model.edges[h.edge];
+    if (e.kind == EdgeKind::Chord) return;
     gp_Pnt2d& uv = is_start ? h.start : h.end;
     const Handle(Geom_Surface)& s = model.faces[h.face].offset.surface;
     const int end = h.forward == is_start ? 0 : 1;

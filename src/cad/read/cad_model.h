@@ -3,6 +3,7 @@
 
 #include <TopoDS_Face.hxx>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -49,6 +50,9 @@ struct CadModel {
   double tolerance = 0;  ///< How exact the file says that its coordinates are, in its unit; 0: it does not say.
   std::vector<std::string> extras, remarks;
 };
+
+/// Of each face of a body, the lowest of those in its shell: faces that hang together by edges.
+std::vector<std::uint32_t> shells_of(const Body& body);
 
 /// Reads a file. \pre format is step, iges or brep \throw InvalidCad
 CadModel read_model(const std::string& path, const std::string& format);

@@ -15,6 +15,8 @@
 #include <StepShape_Face.hxx>
 #include <StepShape_SolidModel.hxx>
 #include <TCollection_HAsciiString.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
 #include <UnitsMethods.hxx>
@@ -25,6 +27,7 @@
 #include <fstream>
 #include <set>
 
+#include "ground/numbers/disjoint_sets.h"
 #include "read/document.h"
 #include "read/name_instances.h"
 
@@ -154,6 +157,22 @@ CadModel read_brep(const std::string& path) {
   CadModel model;
   add_shape(shape, model);
   return model;
+}
+
+std::vector<std::uint32_t> shells_of(const Body& body) {
+  DisjointSets joined(body.faces.size());
+  TopTools_IndexedMapOfShape edges;
+  std::vector<std::uint32_t> first_face;  // of each edge
+  for (std::uint32_t f = 0; f < body.faces.size(); ++f) {
+    TopTools_IndexedMapOfShape own;
+    TopExp::MapShapes(body.faces[f].face, TopAbs_EDGE, own);
+    for (int e = 1; e <= own.Extent(); ++e) {
+      const auto number = static_cast<std::size_t>(edges.Add(own(e)));
+      if (number > first_face.size()) first_face.push_back(f);
+      else joined.join(f, first_face[number - 1]);
+    }
+  }
+  return std::move(joined).firsts();
 }
 
 CadModel read_model(const std::string& path, const std::string& format) {

@@ -103,8 +103,9 @@ gp_Vec corner_normal(const BodyMesh& mesh, const FaceMesh& face, const Triangle&
   return beside.SquareMagnitude() > 0 ? beside : flat_normal(mesh, face, triangle);
 }
 
-void append_body(const BodyMesh& mesh, const Body& body, io::CadMesh& result) {
-  const std::vector<std::uint32_t> number = append_vertices(mesh, result);
+void append_body(BodyMesh& mesh, const Body& body, io::CadMesh& result) {
+  mesh.numbers = append_vertices(mesh, result);
+  const std::vector<std::uint32_t>& number = mesh.numbers;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const FaceMesh& face = mesh.faces[f];
     io::CadFaceFacts facts = body.faces[f].facts;

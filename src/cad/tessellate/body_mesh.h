@@ -43,6 +43,7 @@ struct BodyMesh {
   std::vector<FaceMesh> faces;
   std::vector<BRepAdaptor_Curve> curves;
   std::unordered_map<std::uint64_t, Segment> segments;  ///< By the numbers of their vertices.
+  std::vector<std::uint32_t> numbers;                   ///< Of vertices in the CadMesh; kNone: no triangle has it.
   std::size_t unmatched = 0;                            ///< Edges that two faces have divided in two ways.
 
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
@@ -76,7 +77,7 @@ std::size_t orient(BodyMesh& mesh, bool is_solid);
 /// The normal of a corner of a triangle, outward, at poles that of the direction that the triangle comes from.
 gp_Vec corner_normal(const BodyMesh& mesh, const FaceMesh& face, const Triangle& triangle, std::size_t corner);
 
-/// Adds a body to the result.
-void append_body(const BodyMesh& mesh, const Body& body, io::CadMesh& result);
+/// Adds a body to the result, and numbers its vertices.
+void append_body(BodyMesh& mesh, const Body& body, io::CadMesh& result);
 
 }  // namespace vdb_offset::cad

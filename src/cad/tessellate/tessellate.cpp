@@ -101,12 +101,28 @@ struct Work {
   std::vector<std::pair<std::size_t, std::string>> holes;    // others that have no triangles
 };
 
-void append_tessellated(const Body& body, double deflection, io::CadMesh& result, Work& work) {
+bool is_one_shell(const Body& body) {
+  const std::vector<std::uint32_t> shell = shells_of(body);
+  return std::all_of(shell.begin(), shell.end(), [](std::uint32_t first) { return first == 0; });
+}
+
+/// Turns faces of the model as their triangles were; a closed shell of no solid becomes one.
+void orient_body(Body& body, BodyMesh& mesh, Work& work) {
+  std::vector<double> before;
+  for (const FaceMesh& face : mesh.faces) before.push_back(face.side);
+  work.turned += orient(mesh, body.is_solid);
+  for (std::size_t f = 0; f < before.size(); ++f)
+    if (mesh.faces[f].side != before[f]) body.faces[f].face.Reverse();
+  if (!body.is_solid && count_free_edges(body) == 0 && count_open_sides(mesh) == 0 && is_one_shell(body))
+    body.is_solid = true;
+}
+
+BodyMesh append_tessellated(Body& body, double deflection, io::CadMesh& result, Work& work) {
   BodyMesh mesh = take_mesh(body);
   work.farthest = std::max(work.farthest, divide_to_deflection(mesh, deflection));
   place_on_surfaces(mesh);
   flip_slivers(mesh);
-  work.turned += orient(mesh, body.is_solid);
+  orient_body(body, mesh, work);
   work.unmatched += mesh.unmatched;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (mesh.faces[f].is_missing)
@@ -114,6 +130,7 @@ void append_tessellated(const Body& body, double deflection, io::CadMesh& result
           .emplace_back(result.faces.size() + f + 1, body.faces[f].facts.name);
   if (const std::size_t open = body.is_solid ? count_open_sides(mesh) : 0) ++work.open_solids, work.open_sides += open;
   append_body(mesh, body, result);
+  return mesh;
 }
 
 void tell(const Work& work, double deflection, std::vector<std::string>& remarks) {
@@ -159,12 +176,13 @@ double deflection_of(const io::CadFineness& fineness, double diagonal) {
 
 }  // namespace
 
-io::CadMesh tessellate(CadModel& model, const io::CadFineness& fineness) {
+Tessellation tessellate(CadModel& model, const io::CadFineness& fineness) {
   const double diagonal = diagonal_of(model), deflection = deflection_of(fineness, diagonal);
   mesh_all(model, diagonal, deflection, fineness.angle);
-  io::CadMesh result;
+  Tessellation made;
+  io::CadMesh& result = made.mesh;
   Work work;
-  for (const Body& body : model.bodies) append_tessellated(body, deflection, result, work);
+  for (Body& body : model.bodies) made.bodies.push_back(append_tessellated(body, deflection, result, work));
   result.deflection = std::max(deflection, work.farthest);
   result.unit_micrometres = model.unit_micrometres;
   result.has_unit = model.has_unit;
@@ -176,7 +194,7 @@ io::CadMesh tessellate(CadModel& model, const io::CadFineness& fineness) {
   if (!work.holes.empty())
     throw InvalidCad("expected faces that can be tessellated, got none of " + names_of(work.holes) +
                      ", which would be holes");
-  return result;
+  return made;
 }
 
 }  // namespace vdb_offset::cad

@@ -31,10 +31,10 @@ CadModel read_within_memory(const io::ReadCad& read) {
 }
 
 /// \throw std::bad_alloc if faces have no triangles as there was no memory for them
-io::CadMesh tessellate_within_memory(CadModel& model, const io::CadFineness& fineness) {
+Tessellation tessellate_within_memory(CadModel& model, const io::CadFineness& fineness) {
   try {
-    io::CadMesh mesh = tessellate(model, fineness);
-    if (is_whole(mesh) || !is_memory_short()) return mesh;
+    Tessellation made = tessellate(model, fineness);
+    if (is_whole(made.mesh) || !is_memory_short()) return made;
   } catch (const InvalidCad&) {
     if (!is_memory_short()) throw;
   }
@@ -49,7 +49,9 @@ std::string Requests::mesh(const io::ReadCad& read) {
   limit_memory(read.most_memory);
   model_ = read_within_memory(read);
   report_progress(kRead);
-  const io::CadMesh mesh = tessellate_within_memory(*model_, read.fineness);
+  Tessellation tessellation = tessellate_within_memory(*model_, read.fineness);
+  const io::CadMesh& mesh = tessellation.mesh;
+  meshes_ = std::move(tessellation.bodies);
   report_progress(kTessellated);
   surfaces_.clear();
   for (const Body& body : model_->bodies)
@@ -105,7 +107,7 @@ std::string Requests::answer(io::CadRequest kind, std::string_view payload) {
   if (!model_) throw BadMessage("expected a model first, got another request");
   if (kind == io::CadRequest::Distances) return distances(payload);
   if (kind == io::CadRequest::Offset) return offset(payload);
-  if (kind == io::CadRequest::Write) return io::pack(write_offset(*model_, io::unpack_write(payload)));
+  if (kind == io::CadRequest::Write) return io::pack(write_offset(*model_, meshes_, io::unpack_write(payload)));
   throw BadMessage("expected a request that is known, got number " + std::to_string(static_cast<std::uint32_t>(kind)));
 }
 

@@ -9,6 +9,7 @@
 #include "messages/cad_messages.h"
 #include "read/cad_model.h"
 #include "surface/offset_points.h"
+#include "tessellate/body_mesh.h"
 
 namespace vdb_offset::cad {
 
@@ -24,6 +25,7 @@ class Requests {
   std::string offset(std::string_view payload) const;
 
   std::optional<CadModel> model_;
+  std::vector<BodyMesh> meshes_;        ///< Of its bodies.
   std::vector<SidedSurface> surfaces_;  ///< Of the faces, in the order in which they are given.
 };
 

@@ -6,8 +6,8 @@
 
 #include "messages/cad_messages.h"
 #include "offset/offset_surface.h"
+#include "read/body_shape.h"
 #include "read/cad_model.h"
-#include "write/body_shape.h"
 
 namespace vdb_offset::cad {
 

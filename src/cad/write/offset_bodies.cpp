@@ -2,7 +2,6 @@
 #include "write/offset_bodies.h"
 
 #include <BRepBuilderAPI_Transform.hxx>
-#include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_DataMapOfShapeInteger.hxx>
 #include <algorithm>
@@ -11,82 +10,31 @@
 #include <gp.hxx>
 #include <gp_Trsf.hxx>
 #include <optional>
-#include <utility>
 
 #include "ground/process/progress.h"
 #include "hold/hold_back.h"
-#include "vdb_offset/run.h"
 #include "write/face_distances.h"
 
 namespace vdb_offset::cad {
 namespace {
 
-class BodiesMaker {
+class BodiesHolder {
  public:
-  BodiesMaker(const io::WriteCad& write, double millimetres, bool keeps_turned)
-      : write_(write), millimetres_(millimetres), keeps_turned_(keeps_turned) {}
+  BodiesHolder(std::vector<OffsetBody>& bodies, const Asked& asked) : bodies_(bodies), asked_(asked) {}
 
-  OffsetBodies run(const CadModel& model) {
-    for (const Body& body : model.bodies) {
-      bodies_.push_back({body, shape_of(body), {}, {}});
-      bodies_.back().source.shape = scaled(bodies_.back().source.shape, millimetres_);
-    }
-    try {
-      take_distances();
-      if (write_.held) make_held();
-      else make_bodies();
-    } catch (const Error& error) {
-      made_.gaps.emplace_back(error.what());
-    }
-    return std::move(made_);
-  }
-
- private:
-  double largest() const { return millimetres_ * std::abs(write_.distance); }
-
-  void take_distances() {
-    if (write_.is_even()) return;
-    std::size_t first_face = 0;
-    for (OffsetBody& each : bodies_) {
-      each.distances = distances_of(write_, first_face, each.source, millimetres_);
-      first_face += each.body.faces.size();
-    }
-  }
-
-  void make_bodies() {
-    const auto count = static_cast<double>(bodies_.size());
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const ProgressPart part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
-      OffsetBody& each = bodies_[i];
-      OffsetCadRequest request;
-      request.keeps_turned = keeps_turned_ && each.body.is_solid;
-      request.source = each.source.shape;
-      request.distance = each.is_even() ? millimetres_ * write_.distance : largest();
-      request.fit_tolerance = millimetres_ * write_.fit_tolerance;
-      request.of_face = each.distances;
-      try {
-        each.result = offset_cad(request);
-      } catch (const Standard_Failure& failure) {
-        each.result = {};
-        each.result.gaps.push_back(std::string("OpenCASCADE fails: ") + failure.DynamicType()->Name());
-      }
-    }
-  }
-
-  /// Makes the bodies with their faces held back, first where fronts come towards each other, then where faces of the
-  /// result cross as well.
-  void make_held() {
+  HeldBodies run() {
     constexpr int kMostRounds = 4;
     HoldRequest request;
     request.source = together(bodies_, [](const OffsetBody& each) { return each.source.shape; });
     for (const OffsetBody& each : bodies_)
       for (std::size_t k = 0; k < each.body.faces.size(); ++k)
-        request.distances.push_back(each.is_even() ? FaceDistance{millimetres_ * write_.distance, {}, 0}
+        request.distances.push_back(each.is_even() ? FaceDistance{asked_.millimetres * asked_.write.distance, {}, 0}
                                                    : each.distances[k]);
-    request.largest = largest();
+    request.largest = asked_.largest();
     std::optional<Soup> obstacles;
-    if (!write_.obstacle_triangles.empty()) request.obstacles = &obstacles.emplace(obstacle_soup(write_, millimetres_));
-    request.clearance = millimetres_ * write_.clearance;
+    if (!asked_.write.obstacle_triangles.empty())
+      request.obstacles = &obstacles.emplace(obstacle_points(asked_), asked_.write.obstacle_triangles);
+    request.clearance = asked_.millimetres * asked_.write.clearance;
     HoldBack hold(request);
     for (int round = 0; round < kMostRounds; ++round) {
       const std::vector<FaceDistance> distances = hold.distances();
@@ -101,39 +49,40 @@ class BodiesMaker {
       {  // nobody knows how many rounds there will be: each is shown as half of what is left
         const double left = std::pow(0.5, round);
         const ProgressPart part(1 - left, 1 - left / 2);
-        make_bodies();
+        made_.results.clear();
+        for (const OffsetBody& each : bodies_) made_.results.push_back(offset_cad(request_of(each, asked_)));
       }
       if (!hold.add(crossing_faces())) break;
     }
+    return std::move(made_);
   }
 
+ private:
   /// The faces of the source, counted over all bodies, whose offsets cross.
   std::vector<std::array<int, 2>> crossing_faces() const {
     TopTools_DataMapOfShapeInteger numbers;  // of the source's faces, by those made of them
     int first = 0;
-    for (const OffsetBody& each : bodies_) {
-      if (each.result.shape.IsNull()) return {};
-      for (std::size_t k = 0; k < each.result.made_of.size(); ++k)
-        if (!each.result.made_of[k].IsNull()) numbers.Bind(each.result.made_of[k], first + static_cast<int>(k));
-      first += static_cast<int>(each.body.faces.size());
+    for (const OffsetCadResult& each : made_.results) {
+      if (each.shape.IsNull()) return {};
+      for (std::size_t k = 0; k < each.made_of.size(); ++k)
+        if (!each.made_of[k].IsNull()) numbers.Bind(each.made_of[k], first + static_cast<int>(k));
+      first += static_cast<int>(each.faces.size());
     }
-    const TopoDS_Shape all = together(bodies_, [](const OffsetBody& each) { return each.result.shape; });
+    const TopoDS_Shape all = together(made_.results, [](const OffsetCadResult& each) { return each.shape; });
     std::vector<int> sources;
     for (TopExp_Explorer face(all, TopAbs_FACE); face.More(); face.Next())
       sources.push_back(numbers.IsBound(face.Current()) ? numbers.Find(face.Current()) : -1);
     std::vector<std::array<int, 2>> pairs;
-    for (const auto& [a, b] : result_soup(all, largest()).crossing_faces()) {
+    for (const auto& [a, b] : Soup::of_result(all, asked_.largest()).crossing_faces()) {
       const int one = sources[static_cast<std::size_t>(a)], other = sources[static_cast<std::size_t>(b)];
       if (one >= 0 && other >= 0) pairs.push_back({std::min(one, other), std::max(one, other)});
     }
     return pairs;
   }
 
-  const io::WriteCad& write_;
-  const double millimetres_;
-  const bool keeps_turned_;
-  OffsetBodies made_;
-  std::vector<OffsetBody>& bodies_ = made_.all;
+  std::vector<OffsetBody>& bodies_;
+  const Asked& asked_;
+  HeldBodies made_;
 };
 
 }  // namespace
@@ -145,24 +94,39 @@ TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor) {
   return BRepBuilderAPI_Transform(shape, scale, Standard_True).Shape();
 }
 
-Soup result_soup(const TopoDS_Shape& shape, double distance) {
-  constexpr double kAngle = 0.3;  // between normals at neighbouring corners, in radians
-  return {shape, 0.01 * distance, 0.02 * distance, kAngle};
-}
-
-std::vector<gp_Pnt> obstacle_points(const io::WriteCad& write, double millimetres) {
+std::vector<gp_Pnt> obstacle_points(const Asked& asked) {
   std::vector<gp_Pnt> points;
-  for (const Vec3d& at : write.obstacle_positions)
-    points.emplace_back(millimetres * at.x(), millimetres * at.y(), millimetres * at.z());
+  points.reserve(asked.write.obstacle_positions.size());
+  for (const Vec3d& at : asked.write.obstacle_positions)
+    points.emplace_back(asked.millimetres * at.x(), asked.millimetres * at.y(), asked.millimetres * at.z());
   return points;
 }
 
-Soup obstacle_soup(const io::WriteCad& write, double millimetres) {
-  return {obstacle_points(write, millimetres), write.obstacle_triangles};
+std::vector<OffsetBody> bodies_of(const CadModel& model, const std::vector<BodyMesh>& meshes, const Asked& asked) {
+  std::vector<OffsetBody> bodies;
+  bodies.reserve(model.bodies.size());
+  std::size_t first_face = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    bodies.push_back({model.bodies[b], meshes[b], shape_of(model.bodies[b]), {}});
+    OffsetBody& each = bodies.back();
+    each.source.shape = scaled(each.source.shape, asked.millimetres);
+    if (!asked.write.is_even()) each.distances = distances_of(asked.write, first_face, each.source, asked.millimetres);
+    first_face += each.body.faces.size();
+  }
+  return bodies;
 }
 
-OffsetBodies offset_bodies(const CadModel& model, const io::WriteCad& write, double millimetres, bool keeps_turned) {
-  return BodiesMaker(write, millimetres, keeps_turned).run(model);
+OffsetCadRequest request_of(const OffsetBody& body, const Asked& asked) {
+  OffsetCadRequest request;
+  request.source = body.source.shape;
+  request.distance = body.is_even() ? asked.millimetres * asked.write.distance : asked.largest();
+  request.fit_tolerance = asked.millimetres * asked.write.fit_tolerance;
+  request.of_face = body.distances;
+  return request;
+}
+
+HeldBodies hold_bodies(std::vector<OffsetBody>& bodies, const Asked& asked) {
+  return BodiesHolder(bodies, asked).run();
 }
 
 }  // namespace vdb_offset::cad

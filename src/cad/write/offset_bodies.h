@@ -11,25 +11,26 @@
 #include "messages/cad_messages.h"
 #include "offset/offset_solid.h"
 #include "offset/offset_surface.h"
+#include "read/body_shape.h"
 #include "read/cad_model.h"
-#include "write/body_shape.h"
+#include "tessellate/body_mesh.h"
 
 namespace vdb_offset::cad {
 
-/// A body of the source, in millimetres, and its offset.
+/// A body of the source, in millimetres, and how it is to be offset.
 struct OffsetBody {
   const Body& body;
+  const BodyMesh& mesh;
   BodyShape source;
-  OffsetCadResult result;
   std::vector<FaceDistance> distances;  ///< Of each face; empty: all have the same.
   bool is_even() const { return distances.empty(); }
 };
 
-struct OffsetBodies {
-  std::vector<OffsetBody> all;
-  std::size_t held = 0;           ///< Faces that are held back.
-  double least_held = 1;          ///< The least share of its distance that a point of them goes.
-  std::vector<std::string> gaps;  ///< Why nothing was made.
+/// What is asked of a model, and how many millimetres its unit is.
+struct Asked {
+  const io::WriteCad& write;
+  double millimetres = 1;
+  double largest() const { return millimetres * std::abs(write.distance); }
 };
 
 /// OpenCASCADE's tolerances are lengths, and meant for millimetres: models in other units are brought to these.
@@ -45,15 +46,25 @@ TopoDS_Shape together(const Bodies& bodies, ShapeIn&& shape_in) {
   return all;
 }
 
-/// The triangles that are judged of a result. \param distance the largest
-Soup result_soup(const TopoDS_Shape& shape, double distance);
-
 /// The corners of obstacles, in millimetres.
-std::vector<gp_Pnt> obstacle_points(const io::WriteCad& write, double millimetres);
-Soup obstacle_soup(const io::WriteCad& write, double millimetres);
+std::vector<gp_Pnt> obstacle_points(const Asked& asked);
 
-/// Offsets each body by offset_cad(), its faces held back if that is asked for.
-/// \param millimetres how many the model's unit is \param keeps_turned as that of OffsetCadRequest, for solids
-OffsetBodies offset_bodies(const CadModel& model, const io::WriteCad& write, double millimetres, bool keeps_turned);
+/// The bodies of a model. \param meshes what each was tessellated to \throw InvalidExpression, or what is returned
+/// InvalidInput, for distances without values
+std::vector<OffsetBody> bodies_of(const CadModel& model, const std::vector<BodyMesh>& meshes, const Asked& asked);
+
+/// What offset_cad() is asked for of a body.
+OffsetCadRequest request_of(const OffsetBody& body, const Asked& asked);
+
+/// Bodies whose faces are held back where fronts meet.
+struct HeldBodies {
+  std::vector<OffsetCadResult> results;
+  std::size_t held = 0;   ///< Faces that are held back.
+  double least_held = 1;  ///< The least share of its distance that a point of them goes.
+};
+
+/// Offsets bodies by offset_cad() with their faces held back, first where fronts come towards each other, then where
+/// faces of the result cross as well; gives the bodies the distances that their faces then have.
+HeldBodies hold_bodies(std::vector<OffsetBody>& bodies, const Asked& asked);
 
 }  // namespace vdb_offset::cad

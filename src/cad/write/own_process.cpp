@@ -82,8 +82,8 @@ void write_apart(const WrittenModel& model, const std::string& format, const std
   if (status != 0) throw InvalidCad("expected a model that OpenCASCADE can write, got one that it cannot");
 }
 
-std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, unsigned seconds,
-                                             std::string& gap) {
+std::optional<std::string> in_own_process(const std::function<std::string()>& work, unsigned seconds,
+                                          std::string& gap) {
   const MemoryFile reply;
   const pid_t child = ::fork();
   if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
@@ -93,12 +93,9 @@ std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten(
     ::getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, addresses() + kMostMemory);
     if (kMayLimit) ::setrlimit(RLIMIT_AS, &limit);
-    if (seconds > 0) {
-      const rlimit time{seconds, seconds};
-      ::setrlimit(RLIMIT_CPU, &time);
-    }
+    if (seconds > 0) limit_seconds(seconds);
     try {
-      reply.write(io::pack(work()));
+      reply.write(work());
     } catch (const Standard_Failure&) {
       ::_exit(kFailed);
     } catch (const std::exception&) {
@@ -109,10 +106,18 @@ std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten(
   int status = 0;
   while (::waitpid(child, &status, 0) < 0)
     if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
-  if (status == 0) return io::unpack_written(reply.bytes());
+  if (status == 0) return reply.bytes();
   gap = WIFSIGNALED(status) ? "OpenCASCADE is ended by signal " + std::to_string(WTERMSIG(status)) + " by the result"
                             : std::string("OpenCASCADE fails with the result");
   return std::nullopt;
+}
+
+void limit_seconds(unsigned seconds) {
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
+  const rlim_t end = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + seconds;
+  const rlimit time{end, end};
+  ::setrlimit(RLIMIT_CPU, &time);
 }
 
 }  // namespace vdb_offset::cad

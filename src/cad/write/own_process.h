@@ -32,7 +32,9 @@ void write_apart(const WrittenModel& model, const std::string& format, const std
 
 /// Does work in a process of its own, for some seconds of a processor at most unless they are 0. Nothing if that is
 /// ended by a signal or an exception; `gap` then says so.
-std::optional<io::CadWritten> in_own_process(const std::function<io::CadWritten()>& work, unsigned seconds,
-                                             std::string& gap);
+std::optional<std::string> in_own_process(const std::function<std::string()>& work, unsigned seconds, std::string& gap);
+
+/// Lets this process have so many more seconds of a processor.
+void limit_seconds(unsigned seconds);
 
 }  // namespace vdb_offset::cad

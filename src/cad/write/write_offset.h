@@ -2,14 +2,14 @@
 #pragma once
 
 #include "messages/cad_messages.h"
-#include "read/cad_model.h"
+#include "tessellate/body_mesh.h"
 
 namespace vdb_offset::cad {
 
-/// Makes the offset of a model as a file of a CAD model: each body by offset_cad(). The file is read again, and what is
-/// found in it is judged; solids that are not good are left out as such, and their faces or triangles written. In
-/// processes of their own, as OpenCASCADE may not survive a result that is not good: at most five.
+/// Makes the offset of a model as a file of a CAD model, body by body: of all attempts() the first that is good is
+/// taken, by what is found in its file when that is read again. Each is made in a process of its own, as OpenCASCADE
+/// may not survive a result that is not good. \param meshes what the bodies were tessellated to
 /// \throw InvalidCad if OpenCASCADE cannot write it
-io::CadWritten write_offset(const CadModel& model, const io::WriteCad& write);
+io::CadWritten write_offset(const CadModel& model, const std::vector<BodyMesh>& meshes, const io::WriteCad& write);
 
 }  // namespace vdb_offset::cad

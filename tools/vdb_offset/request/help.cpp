@@ -80,7 +80,7 @@ std::span<const HelpTopic> help_topics() {
         "speed",   "direction",    "layers-anyway",   "viscosity",   "density",      "reynolds",  "length"}},
       {"inputs",
        "Curves, CAD models and level sets",
-       {"close", "flatten", "deflection", "angle", "cad-seconds", "fit-tolerance", "faceted", "grid", "isovalue"}},
+       {"close", "flatten", "deflection", "angle", "cad-seconds", "fit-tolerance", "exact", "grid", "isovalue"}},
       {"outputs",
        "Files that are written",
        {"format", "normals", "precision", "report", "states", "paths", "html", "save-vdb", "no-sync", "json"}},

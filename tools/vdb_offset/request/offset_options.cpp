@@ -217,8 +217,9 @@ void declare_cad_output(CommandLine& line, Request& request) {
       "With an OUTPUT that is a CAD model (.step .stp .brep): how far fitted faces may be from the offset, world "
       "units [a ten-thousandth of the distance]",
       request.fit_tolerance, number_between("--fit-tolerance", "a number above 0", 0, kAny));
-  line.flag("--faceted", "With an OUTPUT that is a CAD model: write a solid of triangles where no other can be made",
-            request.faceted);
+  line.flag("--exact",
+            "With an OUTPUT that is a CAD model: write none if faces of it would be triangles, where exact ones fail",
+            request.exact);
 }
 
 /// Declares the options that say how the offset is computed.

@@ -65,12 +65,12 @@ void require_with_files(const Request& request) {
   const auto is_vdb = [&](const std::string& path) { return format_of(path, request) == io::Format::Vdb; };
   if (is_vdb(request.input) || is_vdb(request.fit) || std::ranges::any_of(request.obstacles, is_vdb))
     given.insert(kLevelSet);
-  require_rules(given, {{{"--faceted", "--fit-tolerance", "--collision cut"}, NeedsAnyOf, {kModel}},
+  require_rules(given, {{{"--exact", "--fit-tolerance", "--collision cut"}, NeedsAnyOf, {kModel}},
                         {{"--inner", "--layers", "--heights", "--mode iso", "--tolerance", "--distance-xy", "--fit",
                           "--side-of", "--symmetry", "--miter-limit", "--taper", "--collision merge", "--corners arc"},
                          Excludes,
                          {kModel}},
-                        {{"--distance-of", "--only", "--faceted"}, Excludes, {kHollowModel}},
+                        {{"--distance-of", "--only"}, Excludes, {kHollowModel}},
                         {{"--grid", "--isovalue"}, NeedsAnyOf, {kLevelSet}}});
 }
 

@@ -168,7 +168,7 @@ struct Request {
   io::VdbReading level_set;                 ///< Which surface of an OpenVDB file is the mesh.
   std::optional<GivenDistance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
   double fit_tolerance = 0;                 ///< Of written CAD models, world units; 0: 1e-4 distances.
-  bool faceted = false;                     ///< Write a CAD model of triangles where no other can be made.
+  bool exact = false;                       ///< Write a CAD model of exact faces, or none.
   bool cuts = false;                        ///< --collision cut: of an output that is a CAD model.
   double angle = 15, cad_seconds = 300;     ///< Of CAD models: degrees, and how long reading may take.
   std::optional<GivenDistance> flatten;     ///< How far straight segments may be from curved ones; none: the default.

@@ -151,11 +151,16 @@ std::string shares_in_words(double least, double most) {
 
 /// What was made of a CAD model.
 std::string cad_in_words(const CadFileFacts& cad, const Lengths& lengths) {
-  constexpr const char* kMade[] = {"a valid solid", "valid shells", "single faces, no solid", "a solid of triangles"};
+  constexpr const char* kMade[] = {"a valid solid", "valid shells", "valid, in part of triangles",
+                                   "of triangles, and doubtful"};
   std::string text =
       fmt::format("{}: {} faces kept, {} fitted", kMade[static_cast<int>(cad.made)], cad.kept, cad.fitted);
   if (cad.fitted > 0) text += " to " + lengths(cad.fit_error, 2);
   if (cad.swallowed > 0) text += fmt::format(", {} swallowed", cad.swallowed);
+  if (cad.triangles > 0)
+    text += fmt::format(", {} in part or wholly of {} triangles: {:.4g} % of the area is exact", cad.faceted,
+                        cad.triangles, 100 * cad.exact_share);
+  if (cad.vanished > 0) text += fmt::format(", {} solids gone", cad.vanished);
   if (cad.missing > 0) text += fmt::format(", {} missing", cad.missing);
   if (cad.held > 0) text += fmt::format(", {} held back to {:.3g} of the distance", cad.held, cad.least_held);
   if (cad.samples > 0)
@@ -282,7 +287,7 @@ void print_fit_dry_run(const Job& job, const OffsetStatistics& statistics) {
 
 Summary summary_of(const Job& job, const Outcome& outcome, const Products& made) {
   // Whose faces are not the mesh's.
-  const bool is_cad_model = made.cad && made.cad->made != CadFileFacts::Made::Facets;
+  const bool is_cad_model = made.cad.has_value();
   const Lengths& lengths = job.request.lengths;
   const OffsetResult& result = outcome.result;
   const OffsetStatistics& statistics = result.statistics;

@@ -25,12 +25,16 @@ Json shell_json(const ShellFacts& shell) {
 }
 
 Json cad_json(const CadFileFacts& cad) {
-  constexpr const char* kMade[] = {"solid", "shells", "faces", "facets"};
+  constexpr const char* kMade[] = {"solid", "shells", "hybrid", "doubtful"};
   return {{"made", kMade[static_cast<int>(cad.made)]},
           {"faces_kept", cad.kept},
           {"faces_fitted", cad.fitted},
           {"faces_swallowed", cad.swallowed},
+          {"faces_of_triangles", cad.faceted},
           {"faces_missing", cad.missing},
+          {"triangles", cad.triangles},
+          {"exact_share", cad.exact_share},
+          {"vanished_solids", cad.vanished},
           {"faces_held_back", cad.held},
           {"least_share", cad.least_held},
           {"obstacle_gap", cad.obstacle_gap ? Json(*cad.obstacle_gap) : Json()},

@@ -1,40 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "write/body_shape.h"
+#include "read/body_shape.h"
 
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
-#include <TopExp.hxx>
-#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 
-#include "ground/numbers/disjoint_sets.h"
-
 namespace vdb_offset::cad {
-namespace {
-
-/// Which faces are of one shell: those that have edges in common.
-std::vector<std::uint32_t> shells_of(const Body& body) {
-  DisjointSets joined(body.faces.size());
-  TopTools_IndexedMapOfShape edges;
-  std::vector<std::uint32_t> first_face;  // of each edge
-  for (std::uint32_t f = 0; f < body.faces.size(); ++f) {
-    TopTools_IndexedMapOfShape own;
-    TopExp::MapShapes(body.faces[f].face, TopAbs_EDGE, own);
-    for (int e = 1; e <= own.Extent(); ++e) {
-      const auto number = static_cast<std::size_t>(edges.Add(own(e)));
-      if (number > first_face.size()) first_face.push_back(f);
-      else joined.join(f, first_face[number - 1]);
-    }
-  }
-  return std::move(joined).firsts();
-}
-
-}  // namespace
 
 BodyShape shape_of(const Body& body) {
   const std::vector<std::uint32_t> shell_of = shells_of(body);

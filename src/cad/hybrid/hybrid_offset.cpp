@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hybrid/hybrid_offset.h"
+
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepLib.hxx>
+#include <BRep_Builder.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Solid.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "hybrid/hybrid_model.h"
+#include "judge/soup.h"
+#include "offset/build.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+constexpr int kMostRounds = 5;
+
+/// How far vertices of the mesh may be from exact faces.
+double near_of(ExactParts parts, const Tolerances& tolerances) {
+  constexpr double kNear = 0.1;  // distances
+  return parts == ExactParts::Near ? kNear * tolerances.distance : parts == ExactParts::There ? tolerances.gap : -1;
+}
+
+/// Makes a shell, and triangles of what is exact and not good, until all of it is good.
+class HybridShell {
+ public:
+  HybridShell(Model source, const ShellMesh& mesh, const Tolerances& tolerances, ExactParts parts)
+      : source_(std::move(source)),
+        mesh_(mesh),
+        tolerances_(tolerances),
+        on_(source_, mesh, near_of(parts, tolerances)) {}
+
+  TopoDS_Shape make() {
+    for (int round = 0; round < kMostRounds; ++round) {
+      hybrid_ = hybrid_model(source_, mesh_, on_, tolerances_);
+      std::vector<int> bad = hybrid_.off;
+      built_ = {};
+      if (bad.empty()) {
+        built_ = build_shell(hybrid_.model, tolerances_);
+        for (const int edge : built_.bad_edges) append(hybrid_.triangles_of_edge[edge], bad);
+      }
+      if (bad.empty()) add_bad_faces(bad);
+      std::erase_if(bad, [&](int t) { return !on_.is_on(t); });
+      if (bad.empty()) return built_.shell;
+      for (const int t : bad) on_.take_off(t);
+    }
+    return {};
+  }
+
+  const HybridModel& hybrid() const { return hybrid_; }
+  const std::vector<TopoDS_Face>& faces() const { return built_.faces; }
+  const Model& source() const { return source_; }
+
+ private:
+  static void append(const std::vector<int>& more, std::vector<int>& all) {
+    all.insert(all.end(), more.begin(), more.end());
+  }
+
+  /// Faces that are not valid, or cross others.
+  void add_bad_faces(std::vector<int>& bad) const {
+    if (built_.shell.IsNull()) return;
+    for (std::size_t f = 0; f < built_.faces.size() && hybrid_.source_faces[f] >= 0; ++f)
+      if (!BRepCheck_Analyzer(built_.faces[f]).IsValid()) append(hybrid_.triangles_of_face[f], bad);
+    if (!bad.empty()) return;
+    for (const auto& pair : Soup::of_result(built_.shell, tolerances_.distance).crossing_faces())
+      for (const int f : pair) append(hybrid_.triangles_of_face[f], bad);
+  }
+
+  const Model source_;
+  const ShellMesh& mesh_;
+  const Tolerances& tolerances_;
+  OnSurfaces on_;
+  HybridModel hybrid_;
+  Built built_;
+};
+
+double area_of(const ShellMesh& mesh, int triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle].vertices;
+  const gp_Pnt& p = mesh.points[a];
+  return gp_Vec(p, mesh.points[b]).Crossed(gp_Vec(p, mesh.points[c])).Magnitude() / 2;
+}
+
+/// Leaves a shell that cannot be taken apart with its faces alone, which become triangles.
+void forget_surfaces(const TopoDS_Shape& shell, Model& model) {
+  model = {};
+  for (TopExp_Explorer face(shell, TopAbs_FACE); face.More(); face.Next()) model.faces.emplace_back();
+}
+
+/// How the faces of a shell were made, and what became of each.
+void report_shell(const HybridShell& shell, const ShellMesh& mesh, std::size_t first, OffsetCadResult& result) {
+  const HybridModel& hybrid = shell.hybrid();
+  BRep_Builder builder;
+  for (std::size_t f = 0; f < hybrid.model.faces.size(); ++f) {
+    const std::vector<int>& triangles = hybrid.triangles_of_face[f];
+    const std::size_t source = first + static_cast<std::size_t>(mesh.triangles[triangles.front()].face);
+    TopoDS_Shape& made = result.made_of[source];
+    if (made.IsNull()) builder.MakeCompound(static_cast<TopoDS_Compound&>(made = TopoDS_Compound()));
+    builder.Add(made, shell.faces()[f]);
+    const bool is_exact = hybrid.source_faces[f] >= 0;
+    for (const int t : triangles) (is_exact ? result.exact_area : result.flat_area) += area_of(mesh, t);
+    if (is_exact) continue;
+    result.faces[source] = CadFace::Faceted;
+    ++result.triangles;
+  }
+}
+
+}  // namespace
+
+OffsetCadResult hybrid_offset(const OffsetCadRequest& request, const std::vector<ShellMesh>& meshes, ExactParts parts) {
+  OffsetCadResult result;
+  const Tolerances tolerances = tolerances_of(request);
+  BRep_Builder builder;
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  const bool is_solid = request.source.ShapeType() == TopAbs_SOLID;
+  std::size_t number = 0;
+  for (TopExp_Explorer s(request.source, TopAbs_SHELL); s.More(); s.Next(), ++number) {
+    const std::size_t first = result.faces.size();
+    Model model = offset_faces(s.Current(), request, first);
+    if (!model.failure.empty()) forget_surfaces(s.Current(), model);
+    HybridShell shell(std::move(model), meshes[number], tolerances, parts);
+    for (const ModelFace& face : shell.source().faces) {
+      result.fit_error = std::max(result.fit_error, face.offset.error);
+      result.faces.push_back(made_by(face.offset.made));
+    }
+    result.made_of.resize(result.faces.size());
+    const TopoDS_Shape made = shell.make();
+    if (made.IsNull()) result.gaps.emplace_back("exact faces and triangles do not join");
+    else builder.Add(is_solid ? static_cast<TopoDS_Shape&>(solid) : all, made);
+    if (!made.IsNull()) report_shell(shell, meshes[number], first, result);
+  }
+  if (!result.gaps.empty()) return result;
+  if (is_solid) result.shape = solid;
+  else if (number == 1) result.shape = TopExp_Explorer(all, TopAbs_SHELL).Current();
+  else result.shape = all;
+  result.kind = is_solid ? CadKind::Solid : CadKind::Shells;
+  return result;
+}
+
+}  // namespace vdb_offset::cad

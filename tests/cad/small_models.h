@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <TopoDS_Shape.hxx>
+
+// Solids whose offsets have another topology.
+
+/// A block of 30 x 20 x 15 all of whose edges are rounded by 3.
+TopoDS_Shape rounded_block();
+/// Two cubes of 10, joined by a bar of 2 x 2 and 6 long.
+TopoDS_Shape dumbbell();
+/// A pyramid of twelve sides: radius 10, height 10.
+TopoDS_Shape pyramid();
+/// A block of 30 x 20 x 15, and a plate of 30 x 20 x 0.5 beside it.
+TopoDS_Shape block_and_plate();
+/// A cube of 10, three of whose faces lie the other way round.
+TopoDS_Shape turned_cube();
