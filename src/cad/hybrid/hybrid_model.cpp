@@ -270,22 +270,21 @@ class Joiner {
     link(pole, next);
   }
 
-  /// Vertices are where the mesh has them; edges end there.
+  /// Places the vertices, then the ends of edges there.
   void place() {
     Model& model = made_.model;
-    for (std::size_t e = 0; e < model.edges.size(); ++e) {
-      ModelEdge& edge = model.edges[e];
+    for (ModelVertex& at : model.vertices) place_vertex_of(at);
+    for (ModelEdge& edge : model.edges) {
       if (edge.kind != EdgeKind::Smooth) continue;
       const int one = edge.half[0] >= 0 ? edge.half[0] : edge.half[1];
       for (const int end : {0, 1}) {
         const bool is_start = (end == 0) == model.halves[one].forward;
-        edge.range[end] =
-            nearest(model.halves[one], is_start ? point(first_of_[one]) : point(after(last_of_[one])), edge.range[end]);
+        const int vertex = is_start ? model.halves[one].vertex : end_vertex(model, one);
+        edge.range[end] = nearest(model.halves[one], model.vertices[vertex].point, edge.range[end]);
       }
     }
     for (std::size_t v = 0; v < model.vertices.size(); ++v) {
       ModelVertex& at = model.vertices[v];
-      place_vertex_of(at);
       spread_vertex(model, static_cast<int>(v));
       for (const int half : at.ring) {
         const HalfEdge& h = model.halves[half];

@@ -140,7 +140,6 @@ OffsetCadResult hybrid_offset(const OffsetCadRequest& request, const std::vector
   if (is_solid) result.shape = solid;
   else if (number == 1) result.shape = TopExp_Explorer(all, TopAbs_SHELL).Current();
   else result.shape = all;
-  result.kind = is_solid ? CadKind::Solid : CadKind::Shells;
   return result;
 }
 

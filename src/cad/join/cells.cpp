@@ -119,7 +119,6 @@ class Cells {
     result_.shape = solids_of_pieces(outer);
     if (result_.shape.IsNull()) return fail("cells of the faces' offsets do not join to solids");
     unify(outer);
-    result_.kind = CadKind::Solid;
     return std::move(result_);
   }
 

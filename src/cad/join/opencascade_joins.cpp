@@ -51,7 +51,6 @@ OffsetCadResult opencascade_offset(const OffsetCadRequest& request, Join join) {
       if (each.ShapeType() == TopAbs_FACE && there.Contains(each)) made = each;
     result.faces.push_back(made.IsNull() ? CadFace::Swallowed : CadFace::Kept);
   }
-  result.kind = CadKind::Solid;
   return result;
 }
 

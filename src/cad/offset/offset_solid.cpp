@@ -99,17 +99,14 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
       builder.MakeSolid(solid);
       for (const TopoDS_Shape& s : shells) builder.Add(solid, s);
       last = solid;
-      result.kind = CadKind::Solid;
     } else {
       last = shells.front();
-      result.kind = CadKind::Shells;
     }
     builder.Add(all, last);
     made++;
   }
   if (made == 1) result.shape = last;
   else if (made > 1) result.shape = all;
-  if (!result.gaps.empty()) result.kind = CadKind::Faces;
   return result;
 }
 

@@ -18,14 +18,12 @@ struct OffsetCadRequest {
   bool keeps_turned = false;  ///< Leaves what the distance turns round, to be trimmed.
 };
 
-enum class CadKind { Solid, Shells, Faces };
 enum class CadFace { Kept, Fitted, Swallowed, Missing, Faceted };  ///< The last: at least in part.
 
 CadFace made_by(FaceMade made);
 
 struct OffsetCadResult {
-  TopoDS_Shape shape;  ///< Null if there is nothing good.
-  CadKind kind = CadKind::Faces;
+  TopoDS_Shape shape;                    ///< Null if there is nothing good.
   std::vector<CadFace> faces;            ///< How each face of the source was made.
   std::vector<TopoDS_Shape> made_of;     ///< The face of the result for each face of the source; null if none.
   double fit_error = 0;                  ///< The worst of the fitted surfaces.

@@ -60,7 +60,7 @@ class OffsetWriter {
   void hold_all() {
     std::string gap;
     const auto work = [&] {
-      const HeldBodies held = hold_bodies(bodies_, asked_);
+      const HeldBodies held = held_bodies();
       Packer packer;
       for (std::size_t b = 0; b < bodies_.size(); ++b) {
         MadeBody made = check_body(bodies_[b], held.results[b], asked_, Exactness::Exact);
@@ -83,6 +83,18 @@ class OffsetWriter {
     for (MadeBody& made : made_) made = unpack_body(unpacker.text());
     written_.held = unpacker.value<std::uint64_t>();
     written_.least_held = unpacker.value<double>();
+  }
+
+  /// Without results of bodies, but why, where distances have no value.
+  HeldBodies held_bodies() {
+    try {
+      return hold_bodies(bodies_, asked_);
+    } catch (const Error& error) {
+      HeldBodies none;
+      none.results.resize(bodies_.size());
+      for (OffsetCadResult& each : none.results) each.gaps.emplace_back(error.what());
+      return none;
+    }
   }
 
   /// Tries all ways to make a body; only the last ones if its faces were to be held back.

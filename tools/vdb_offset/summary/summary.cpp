@@ -160,7 +160,7 @@ std::string cad_in_words(const CadFileFacts& cad, const Lengths& lengths) {
   if (cad.triangles > 0)
     text += fmt::format(", {} in part or wholly of {} triangles: {:.4g} % of the area is exact", cad.faceted,
                         cad.triangles, 100 * cad.exact_share);
-  if (cad.vanished > 0) text += fmt::format(", {} solids gone", cad.vanished);
+  if (cad.vanished > 0) text += fmt::format(", {} solid{} gone", cad.vanished, cad.vanished == 1 ? "" : "s");
   if (cad.missing > 0) text += fmt::format(", {} missing", cad.missing);
   if (cad.held > 0) text += fmt::format(", {} held back to {:.3g} of the distance", cad.held, cad.least_held);
   if (cad.samples > 0)
