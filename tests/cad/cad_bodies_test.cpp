@@ -157,3 +157,35 @@ TEST_CASE("cad bodies: triangles take the place of faces that fail, in one close
   CHECK_THROWS_AS(io::write_cad(path_in("none.step"), block, distances, mesh.positions, how), io::NoCadModel);
   CHECK_FALSE(std::filesystem::exists(path_in("none.step")));
 }
+
+TEST_CASE("cad bodies: an opened solid has a rim in the surface of each open face", "[cad]") {
+  REQUIRE(test::cad_files().is_made());
+  const io::MeshFile both = io::read_mesh(path_in("block_and_plate.step"));
+  const double block = 30 * 20 * 15, plate = 30 * 20 * 0.5;
+  struct Case {
+    double d;
+    std::vector<const char*> open;  // the block's alone, which is the farther one either way
+    double volume;
+  };
+  const Case cases[] = {
+      {-0.2, {"planar:+z"}, block - 29.6 * 19.6 * 14.8 + plate - 29.6 * 19.6 * 0.1},
+      {1, {"planar:+z"}, 32 * 22 * 16 - block + 32 * 22 * 2.5 - plate},
+      {1, {"planar:+z", "planar:-x"}, 31 * 22 * 16 - block + 32 * 22 * 2.5 - plate},  // side by side
+  };
+  for (const Case& each : cases) {
+    std::vector<io::Selector> open;
+    for (const char* const part : each.open) open.push_back(io::parse_selector(std::string("not:") + part));
+    io::CadWriting how;
+    how.exact = how.thick = true;
+    how.only = io::select_faces(both, open);
+    const CadFileFacts facts = io::write_cad(path_in("opened.step"), both, each.d, {}, how);
+    CHECK(facts.made == Made::Solid);
+    CHECK(facts.volume == Approx(each.volume).epsilon(1e-6));
+    const io::MeshFile again = io::read_mesh(path_in("opened.step"));
+    const Solids solids = solids_of(again);
+    CHECK(solids.volume == Approx(each.volume).epsilon(1e-6));
+    CHECK(solids.count == 3);  // the block's wall is one, the plate's has two skins
+    for (const Vec3d& at : again.polygons.positions)
+      if (at.x() < 35) CHECK(at.z() < 15 + 1e-9);
+  }
+}

@@ -282,8 +282,8 @@ TEST_CASE("cad written: what is placed has its names again", "[cad]") {
 
 TEST_CASE("cad written: what falls apart is two solids", "[cad]") {
   // Two halves of a plate, that hang together by walls of 1 beside a hole of 9.
-  const double r = 9.75, half = 9.25;
-  const double hole = 2 * (half * std::sqrt(r * r - half * half) + r * r * std::asin(half / r));
+  const double r = 9.75, wide = 9.25;
+  const double hole = 2 * (wide * std::sqrt(r * r - wide * wide) + r * r * std::asin(wide / r));
   const Written written = write("waist.step", -0.75, "apart.step");
   CHECK(written.facts.made == Made::Solid);
   CHECK(written.facts.volume == Approx((38.5 * 18.5 - hole) * 3.5).epsilon(1e-6));

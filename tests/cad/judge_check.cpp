@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the worker's judge says of offsets that are right, and of some that look like it, and what its grids cover. A
 // program of its own, as it is linked to OpenCASCADE.
+#include <unistd.h>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
@@ -28,8 +29,10 @@
 #include <gp_Vec.hxx>
 
 #include "judge/judge.h"
+#include "judge/soup.h"
 #include "surface/face_grid.h"
 #include "surface/make_triangles.h"
+#include "write/own_process.h"
 
 namespace {
 
@@ -138,6 +141,41 @@ bool is_as_expected(const char* what, bool expected, const TopoDS_Shape& source,
   return verdict.is_good == expected;
 }
 
+/// Whether points are found to be in a ring, by rays, and in one with a hole in its surface, by solid angles.
+bool are_turns_right() {
+  constexpr int kPoints = 4000;
+  constexpr double kMajor = 10, kMinor = 3, kClear = 0.05;
+  const vdb_offset::cad::Soup ring(BRepPrimAPI_MakeTorus(kMajor, kMinor).Shape(), 0.01, 0.01, 0.1);
+  int wrong = 0, inside = 0;
+  for (int i = 0; i < kPoints; ++i) {  // points of Halton's sequence
+    const auto halton = [&](int base) {
+      double f = 1, r = 0;
+      for (int n = i + 1; n > 0; n /= base) r += (f /= base) * (n % base);
+      return r;
+    };
+    const gp_Pnt p(28 * halton(2) - 14, 28 * halton(3) - 14, 8 * halton(5) - 4);
+    const double off = std::hypot(std::hypot(p.X(), p.Y()) - kMajor, p.Z()) - kMinor;
+    if (std::abs(off) < kClear) continue;
+    inside += off < 0;
+    wrong += std::abs(ring.turns(p) - (off < 0 ? 1 : 0)) > 1e-9;
+  }
+  std::printf("a ring: %d of %d points inside, %d wrong\n", inside, kPoints, wrong);
+  return ring.is_closed() && wrong == 0 && inside > kPoints / 10;
+}
+
+/// Whether a process that takes too long, by the clock, is ended, and says so.
+bool is_time_limited() {
+  std::string gap;
+  const auto waits = [] {
+    ::sleep(20);
+    return std::string("late");
+  };
+  const bool is_ended = !vdb_offset::cad::in_own_process(waits, {0, 0.2}, gap);
+  std::printf("a process that waits: %s\n", gap.c_str());
+  const auto reply = vdb_offset::cad::in_own_process([] { return std::string("in time"); }, {5, 5}, gap);
+  return is_ended && gap.find("too long") != std::string::npos && reply && *reply == "in time";
+}
+
 }  // namespace
 
 int main() {
@@ -149,5 +187,6 @@ int main() {
   const bool is_wrong =
       is_as_expected("two holes in each other", false, source, holes_in_each_other(kDistance), kDistance);
   const bool is_nesting_right = are_shells_right(), is_grid_right = are_grids_right();
-  return is_right && is_wrong && is_nesting_right && is_grid_right ? 0 : 1;
+  const bool is_rest_right = are_turns_right() && is_time_limited();
+  return is_right && is_wrong && is_nesting_right && is_grid_right && is_rest_right ? 0 : 1;
 }

@@ -96,6 +96,29 @@ TEST_CASE("selection: what is behind not: is taken from all else that is named",
     CHECK_THROWS_AS(io::parse_selector(wrong), InvalidOption);
 }
 
+TEST_CASE("selection: the flat end along an axis", "[selection]") {
+  Polygons box = shapes::box(Vec3d(1, 1, 1), 2, false);
+  const Polygons beyond = shapes::box(Vec3d(1, 1, 3), 1, false);  // its ends are farther along z
+  const auto first = static_cast<std::uint32_t>(box.positions.size()), end = box.face_begin.back();
+  box.positions.insert(box.positions.end(), beyond.positions.begin(), beyond.positions.end());
+  for (const auto v : beyond.corners) box.corners.push_back(first + v);
+  for (std::size_t f = 1; f < beyond.face_begin.size(); ++f) box.face_begin.push_back(end + beyond.face_begin[f]);
+  const std::size_t faces = 24;  // of the first box
+  for (const auto& [end_of, most] : {std::pair("planar:+z", 1.5), std::pair("planar:-z", 1.5)}) {
+    const auto chosen = selected(box, {end_of});
+    CHECK(std::count(chosen.begin(), chosen.end(), 1) == 1);
+    const auto face =
+        box.view().face(static_cast<std::size_t>(std::find(chosen.begin(), chosen.end(), 1) - chosen.begin()));
+    for (const auto v : face) CHECK(std::abs(box.positions[v].z()) == most);
+  }
+  const auto side = selected(box, {"planar:-x"});
+  CHECK(std::count(side.begin(), side.begin() + faces, 1) == 4);
+  CHECK(std::count(side.begin() + faces, side.end(), 1) == 1);
+  CHECK_THROWS_WITH(selected(shapes::icosphere(1, 3), {"planar:+y"}), Catch::Contains("'planar:+y', found none"));
+  for (const char* const wrong : {"planar", "planar:", "planar:z", "planar:+w", "planar:+zz", "planar=+z"})
+    CHECK_THROWS_AS(io::parse_selector(wrong), InvalidOption);
+}
+
 TEST_CASE("selection: groups, objects, materials and files of faces", "[selection]") {
   const Folder folder;
   const std::string text =

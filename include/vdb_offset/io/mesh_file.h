@@ -239,6 +239,8 @@ struct Selector {
     Convex,    ///< Faces of surfaces that are curved outward.
     Up,        ///< Faces that look up the z axis, within less than 45 degrees.
     Down,      ///< Faces that look down, likewise.
+    Planar,    ///< The flat end of a mesh along an axis: `name` is +x, -x, +y, -y, +z or -z. Faces that look along it,
+               ///< within a degree, and of these those that lie farthest that way, within 0.01 % of the diagonal.
   };
   By by;
   std::string name;         ///< Empty of those by shape.
@@ -249,7 +251,8 @@ struct Selector {
 };
 
 /// \throw InvalidOption unless the text is `group=NAME`, `material=NAME`, `faces=FILE`, `face=N`, `name=NAME`,
-/// `color=RRGGBB`, `holes`, `holes<D`, `holes>D`, `concave`, `convex`, `up` or `down`, or one of these behind `not:`.
+/// `color=RRGGBB`, `holes`, `holes<D`, `holes>D`, `concave`, `convex`, `up`, `down` or `planar:+z` (or another axis),
+/// or one of these behind `not:`.
 VDB_OFFSET_API Selector parse_selector(const std::string& text);
 /// The word before the equals sign, or of those by shape the word.
 VDB_OFFSET_API const char* in_words(Selector::By by);

@@ -291,10 +291,19 @@ class Joiner {
         if (made_.source_faces[h.face] < 0) continue;
         const double miss = model.faces[h.face].offset.surface->Value(h.start.X(), h.start.Y()).Distance(at.point);
         at.residual = std::max(at.residual, miss);
-        if (miss > 2 * tolerances_.gap) made_.off.push_back(first_of_[half] / 3);
+        if (miss > 2 * tolerances_.gap) take_off_around(first_of_[half]);
       }
     }
     flatten();
+  }
+
+  /// All triangles of a face at the start of a side of its border.
+  void take_off_around(int side) {
+    for (int before = side;; side = twin_[before]) {
+      made_.off.push_back(side / 3);
+      before = after(after(side));
+      if (is_border_[before]) return;
+    }
   }
 
   /// Where the exact faces at a vertex meet that is nearest to where the mesh has it; (u, v) of straight edges there.

@@ -11,14 +11,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ground/mesh/point_triangle.h"
 #include "hybrid/hybrid_model.h"
 #include "judge/soup.h"
+#include "judge/soup_samples.h"
 #include "offset/build.h"
 
 namespace vdb_offset::cad {
 namespace {
 
-constexpr int kMostRounds = 5;
+constexpr int kMostRounds = 40;
+constexpr int kTurnsSamples = 300;
 
 /// How far vertices of the mesh may be from exact faces.
 double near_of(ExactParts parts, const Tolerances& tolerances) {
@@ -26,10 +29,21 @@ double near_of(ExactParts parts, const Tolerances& tolerances) {
   return parts == ExactParts::Near ? kNear * tolerances.distance : parts == ExactParts::There ? tolerances.gap : -1;
 }
 
+/// How far a triangle is from a point.
+double distance_from(const gp_Pnt& point, const ShellMesh& mesh, int triangle) {
+  const auto vector = [](const gp_Pnt& p) { return Vec3d(p.X(), p.Y(), p.Z()); };
+  const auto& [a, b, c] = mesh.triangles[triangle].vertices;
+  return std::sqrt(
+      closest_on_triangle(vector(point), vector(mesh.points[a]), vector(mesh.points[b]), vector(mesh.points[c]))
+          .squared_distance);
+}
+
+}  // namespace
+
 /// Makes a shell, and triangles of what is exact and not good, until all of it is good.
-class HybridShell {
+class HybridOffset::Shell {
  public:
-  HybridShell(Model source, const ShellMesh& mesh, const Tolerances& tolerances, ExactParts parts)
+  Shell(Model source, const ShellMesh& mesh, const Tolerances& tolerances, ExactParts parts)
       : source_(std::move(source)),
         mesh_(mesh),
         tolerances_(tolerances),
@@ -52,6 +66,18 @@ class HybridShell {
     return {};
   }
 
+  /// Makes triangles of what is exact near places; false if nothing is.
+  bool take_off_near(const std::vector<gp_Pnt>& places, double reach) {
+    bool is_any = false;
+    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
+      const auto is_near = [&](const gp_Pnt& place) { return distance_from(place, mesh_, t) <= reach; };
+      if (!on_.is_on(t) || std::none_of(places.begin(), places.end(), is_near)) continue;
+      on_.take_off(t);
+      is_any = true;
+    }
+    return is_any;
+  }
+
   const HybridModel& hybrid() const { return hybrid_; }
   const std::vector<TopoDS_Face>& faces() const { return built_.faces; }
   const Model& source() const { return source_; }
@@ -61,14 +87,20 @@ class HybridShell {
     all.insert(all.end(), more.begin(), more.end());
   }
 
-  /// Faces that are not valid, or cross others.
+  /// Faces that are not valid, have no triangles, cross others, or lie within others.
   void add_bad_faces(std::vector<int>& bad) const {
     if (built_.shell.IsNull()) return;
     for (std::size_t f = 0; f < built_.faces.size() && hybrid_.source_faces[f] >= 0; ++f)
       if (!BRepCheck_Analyzer(built_.faces[f]).IsValid()) append(hybrid_.triangles_of_face[f], bad);
     if (!bad.empty()) return;
-    for (const auto& pair : Soup::of_result(built_.shell, tolerances_.distance).crossing_faces())
+    const Soup soup = Soup::of_result(built_.shell, tolerances_.distance);
+    for (const auto& pair : soup.crossing_faces())
       for (const int f : pair) append(hybrid_.triangles_of_face[f], bad);
+    if (!bad.empty() || !built_.shell.Closed()) return;
+    for (const int f : soup.open_faces()) append(hybrid_.triangles_of_face[f], bad);
+    if (!bad.empty()) return;
+    if (const auto turned = turned_triangle(soup, tolerances_.distance, kTurnsSamples, true))
+      append(hybrid_.triangles_of_face[soup.triangles()[*turned].face], bad);
   }
 
   const Model source_;
@@ -78,6 +110,8 @@ class HybridShell {
   HybridModel hybrid_;
   Built built_;
 };
+
+namespace {
 
 double area_of(const ShellMesh& mesh, int triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle].vertices;
@@ -91,8 +125,10 @@ void forget_surfaces(const TopoDS_Shape& shell, Model& model) {
   for (TopExp_Explorer face(shell, TopAbs_FACE); face.More(); face.Next()) model.faces.emplace_back();
 }
 
+}  // namespace
+
 /// How the faces of a shell were made, and what became of each.
-void report_shell(const HybridShell& shell, const ShellMesh& mesh, std::size_t first, OffsetCadResult& result) {
+void HybridOffset::report(const Shell& shell, const ShellMesh& mesh, std::size_t first, OffsetCadResult& result) {
   const HybridModel& hybrid = shell.hybrid();
   BRep_Builder builder;
   for (std::size_t f = 0; f < hybrid.model.faces.size(); ++f) {
@@ -109,23 +145,38 @@ void report_shell(const HybridShell& shell, const ShellMesh& mesh, std::size_t f
   }
 }
 
-}  // namespace
+HybridOffset::HybridOffset(const OffsetCadRequest& request, std::vector<ShellMesh> meshes, ExactParts parts)
+    : request_(request), meshes_(std::move(meshes)), tolerances_(tolerances_of(request)) {
+  std::size_t first = 0;
+  for (TopExp_Explorer s(request.source, TopAbs_SHELL); s.More(); s.Next()) {
+    Model model = offset_faces(s.Current(), request, first);
+    if (!model.failure.empty()) forget_surfaces(s.Current(), model);
+    first += model.faces.size();
+    const ShellMesh& mesh = meshes_[shells_.size()];
+    shells_.push_back(std::make_unique<Shell>(std::move(model), mesh, tolerances_, parts));
+  }
+}
 
-OffsetCadResult hybrid_offset(const OffsetCadRequest& request, const std::vector<ShellMesh>& meshes, ExactParts parts) {
+HybridOffset::~HybridOffset() = default;
+
+bool HybridOffset::take_off_near(const std::vector<gp_Pnt>& places) {
+  constexpr double kReach = 0.25;  // distances
+  bool is_any = false;
+  for (const auto& shell : shells_) is_any = shell->take_off_near(places, kReach * tolerances_.distance) || is_any;
+  return is_any;
+}
+
+OffsetCadResult HybridOffset::make() {
   OffsetCadResult result;
-  const Tolerances tolerances = tolerances_of(request);
   BRep_Builder builder;
   TopoDS_Solid solid;
   builder.MakeSolid(solid);
   TopoDS_Compound all;
   builder.MakeCompound(all);
-  const bool is_solid = request.source.ShapeType() == TopAbs_SOLID;
-  std::size_t number = 0;
-  for (TopExp_Explorer s(request.source, TopAbs_SHELL); s.More(); s.Next(), ++number) {
+  const bool is_solid = request_.source.ShapeType() == TopAbs_SOLID;
+  for (std::size_t s = 0; s < shells_.size(); ++s) {
+    Shell& shell = *shells_[s];
     const std::size_t first = result.faces.size();
-    Model model = offset_faces(s.Current(), request, first);
-    if (!model.failure.empty()) forget_surfaces(s.Current(), model);
-    HybridShell shell(std::move(model), meshes[number], tolerances, parts);
     for (const ModelFace& face : shell.source().faces) {
       result.fit_error = std::max(result.fit_error, face.offset.error);
       result.faces.push_back(made_by(face.offset.made));
@@ -134,11 +185,11 @@ OffsetCadResult hybrid_offset(const OffsetCadRequest& request, const std::vector
     const TopoDS_Shape made = shell.make();
     if (made.IsNull()) result.gaps.emplace_back("exact faces and triangles do not join");
     else builder.Add(is_solid ? static_cast<TopoDS_Shape&>(solid) : all, made);
-    if (!made.IsNull()) report_shell(shell, meshes[number], first, result);
+    if (!made.IsNull()) report(shell, meshes_[s], first, result);
   }
   if (!result.gaps.empty()) return result;
   if (is_solid) result.shape = solid;
-  else if (number == 1) result.shape = TopExp_Explorer(all, TopAbs_SHELL).Current();
+  else if (shells_.size() == 1) result.shape = TopExp_Explorer(all, TopAbs_SHELL).Current();
   else result.shape = all;
   return result;
 }

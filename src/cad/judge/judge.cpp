@@ -19,12 +19,13 @@
 #include <TopoDS_Face.hxx>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
+#include <optional>
 
 #include "ground/process/progress.h"
 #include "judge/edge_points.h"
 #include "judge/soup.h"
+#include "judge/soup_samples.h"
 #include "offset/offset_surface.h"
 
 namespace vdb_offset::cad {
@@ -42,20 +43,6 @@ constexpr double kMitreOverFace = 3;
 // Points that are held against the exact shape where its tessellation leaves doubt. More doubt than that is none.
 constexpr int kMostDoubts = 300;
 
-// Numbers in [0, 1) that are the same on every machine (splitmix64).
-class Numbers {
- public:
-  double next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
-
 std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", x);
@@ -68,32 +55,6 @@ std::string text_of(const gp_Pnt& p) { return number(p.X()) + " " + number(p.Y()
 std::string place_of(const Soup& source, const SoupPoint& foot, const Soup& result, const SoupPoint& p) {
   return " on face " + std::to_string(result.triangles()[p.triangle].face + 1) + " over the source's face " +
          std::to_string(source.triangles()[foot.triangle].face + 1);
-}
-
-// Points spread over a soup by area: a stratified choice of triangles.
-std::vector<SoupPoint> spread(const Soup& soup, int count) {
-  std::vector<double> sums = {0};
-  for (const Soup::Triangle& t : soup.triangles())
-    sums.push_back(sums.back() +
-                   gp_Vec(t.points[0], t.points[1]).Crossed(gp_Vec(t.points[0], t.points[2])).Magnitude());
-  std::vector<SoupPoint> points;
-  Numbers numbers;
-  std::size_t at = 0;
-  for (int i = 0; i < count; i++) {
-    const double area = sums.back() * (i + numbers.next()) / count;
-    while (at + 2 < sums.size() && sums[at + 1] <= area) at++;
-    const double a = numbers.next(), b = numbers.next();
-    points.push_back(soup.on_triangle(static_cast<int>(at), a, b));
-  }
-  // Small faces too: one point in every face's largest triangle.
-  std::vector<int> largest(soup.faces().size(), -1);
-  for (std::size_t t = 0; t + 1 < sums.size(); t++) {
-    int& best = largest[soup.triangles()[t].face];
-    if (best < 0 || sums[t + 1] - sums[t] > sums[best + 1] - sums[best]) best = static_cast<int>(t);
-  }
-  for (int t : largest)
-    if (t >= 0) points.push_back(soup.on_triangle(t, 1.0 / 3, 1.0 / 3));
-  return points;
 }
 
 struct Counts {
@@ -115,11 +76,6 @@ constexpr double kDoubtful = 0.1;
 constexpr double kBeyondDoubt = 0.2;     // of the scale, twice what the source's triangles may be off
 constexpr double kNoVolume = 1e-9;       // of the source's
 constexpr double kMostVolumeOff = 1e-3;  // of a volume, as it is found by numbers
-
-// How far beside triangles it is counted how often the result goes round, in distances; and the most triangles that are
-// counted for it, for all points together.
-constexpr double kBeside = 1e-5;
-constexpr std::size_t kMostTurns = 20000000;
 
 // Without solids: a point in one is at no distance from it.
 TopoDS_Shape faces_of(const TopoDS_Shape& shape) {
@@ -214,7 +170,7 @@ class Judge {
     if (result.triangles().empty()) return verdict_;
     // Valid by its tolerances, a wire may still be open in (u, v): who makes triangles of the face leaves some out.
     if (const std::size_t open = result.open_sides(); is_closed_ && open > 0)
-      fault("triangles of the result are open at " + std::to_string(open) + " sides");
+      fault("triangles of the result are open at " + std::to_string(open) + " sides", result.open_places());
     verdict_.volume = result.volume();
     if (is_closed_ && verdict_.volume >= 0 && verdict_.volume < kNoVolume * std::abs(source.volume()))
       fault("the result encloses nothing");
@@ -230,14 +186,17 @@ class Judge {
     report_progress(kCover);
     if (is_closed_ && asked_.has_one_side()) check_enclosed(source, result);
     if (is_closed_) check_turns(result);
-    if (crosses(result) && crosses(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2))) fault("the result crosses itself");
+    if (!crossings(result).empty())
+      if (const auto places = crossings(Soup(result_, 0.005 * far_, 0.01 * far_, 0.2)); !places.empty())
+        fault("the result crosses itself", places);
     return verdict_;
   }
 
  private:
-  void fault(const std::string& text) {
+  void fault(const std::string& text, const std::vector<gp_Pnt>& places = {}) {
     verdict_.is_good = false;
     verdict_.faults.push_back(text);
+    verdict_.places.insert(verdict_.places.end(), places.begin(), places.end());
   }
 
   void check_topology() {
@@ -266,13 +225,14 @@ class Judge {
   // doubt, as what stays is.
   void check_side(const Soup& source, const Soup& result) {
     const std::vector<SoupPoint> points = spread(result, options_.samples / 10);
-    const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / kMostTurns);
+    const std::size_t every = step_of_turns(source, points.size());
     for (std::size_t i = 0; i < points.size(); i += every) {
       const gp_Pnt& point = points[i].point;
       if (source.contains(point) == (asked_.inward > 0)) continue;
       if (source.closest(point).distance <= kBeyondDoubt * far_) continue;
       fault("walls are gone: points are on the wrong side, as at " + text_of(point) + " on face " +
-            std::to_string(result.triangles()[points[i].triangle].face + 1));
+                std::to_string(result.triangles()[points[i].triangle].face + 1),
+            {point});
       return;
     }
   }
@@ -283,7 +243,7 @@ class Judge {
     int near = 0, far = 0, doubts = 0, wrong_side = 0, n = 0;
     std::string place;
     verdict_.least = 1e300;
-    const std::size_t every = std::max<std::size_t>(1, points.size() * source.triangles().size() / 40000000);
+    const std::size_t every = step_of_turns(source, points.size());
     const ProgressOf progress(kSoups, kPoints, points.size());
     for (const SoupPoint& p : points) {
       progress.report(&p - points.data());
@@ -319,7 +279,7 @@ class Judge {
   // walls that have passed each other, leave points of the result where they ought to be.
   void check_enclosed(const Soup& source, const Soup& result) {
     const std::vector<SoupPoint> points = spread(source, options_.samples / 10);
-    const std::size_t every = std::max<std::size_t>(1, points.size() * result.triangles().size() / kMostTurns);
+    const std::size_t every = step_of_turns(result, points.size());
     const std::size_t faces = source.faces().size();  // the last points: one of each face
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i % every != 0 && i + faces < points.size()) continue;
@@ -331,41 +291,28 @@ class Judge {
     }
   }
 
-  // Faces that lie in what others enclose cross none of them where they end on each other: just outside of a face there
-  // is nothing, and just inside of it material, once.
   void check_turns(const Soup& result) {
-    const std::vector<SoupPoint> points = spread(result, options_.samples / 10);
-    const std::size_t every = std::max<std::size_t>(1, points.size() * result.triangles().size() / kMostTurns);
-    const auto is_other = [](double turns, double expected) {
-      // Between whole numbers triangles have gaps, or miss each other, which is reported elsewhere.
-      return std::abs(turns - std::round(turns)) < 0.05 && std::round(turns) != expected;
-    };
-    for (std::size_t i = 0; i < points.size(); i += every) {
-      const auto& [a, b, c] = result.triangles()[points[i].triangle].points;
-      const gp_Vec across = gp_Vec(a, b).Crossed(gp_Vec(a, c));
-      const gp_Pnt middle((a.XYZ() + b.XYZ() + c.XYZ()) / 3);
-      if (across.Magnitude() < 1e-6 * far_ * far_) continue;
-      const gp_Vec out = across.Normalized() * (kBeside * far_);
-      if (!is_other(result.turns(middle.Translated(out)), 0) && !is_other(result.turns(middle.Translated(-out)), 1))
-        continue;
-      fault("a face lies within others, or is turned, as at " + text_of(middle) + " on face " +
-            std::to_string(result.triangles()[points[i].triangle].face + 1));
-      return;
-    }
+    const std::optional<int> triangle = turned_triangle(result, far_, options_.samples / 10, options_.may_fold);
+    if (!triangle) return;
+    const Soup::Triangle& at = result.triangles()[*triangle];
+    fault("a face lies within others, or is turned, as at " + text_of(middle_of(at)) + " on face " +
+              std::to_string(at.face + 1),
+          {middle_of(at)});
   }
 
-  // Whether triangles cross, but at edges whose faces miss each other by as much as the topology allows.
-  bool crosses(const Soup& soup) const {
+  // Where triangles cross, but at edges whose faces miss each other by as much as the topology allows.
+  std::vector<gp_Pnt> crossings(const Soup& soup) const {
     constexpr std::size_t kMostCrossings = 200;
-    for (const gp_Pnt& p : soup.crossings(kMostCrossings)) {
+    std::vector<gp_Pnt> found = soup.crossings(kMostCrossings);
+    std::erase_if(found, [&](const gp_Pnt& p) {
       bool is_told = false;
       for (TopExp_Explorer e(result_, TopAbs_EDGE); e.More() && !is_told; e.Next()) {
         const double tolerance = BRep_Tool::Tolerance(TopoDS::Edge(e.Current()));
         is_told = tolerance > 1e-4 * far_ && exact_distance(e.Current(), p) < 4 * tolerance + 0.02 * far_;
       }
-      if (!is_told) return true;
-    }
-    return false;
+      return is_told;
+    });
+    return found;
   }
 
   void check_cover(const Soup& source, const Soup& result) {

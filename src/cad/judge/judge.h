@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <gp_Pnt.hxx>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace vdb_offset::cad {
 struct JudgeOptions {
   int samples = 10000;
   double tolerance = 0.01;  ///< Of |distance|: how near or far points may be.
+  bool may_fold = false;    ///< Triangles of a mesh may lie on each other, back to back.
 };
 
 /// How far the faces of a source were to go.
@@ -35,6 +37,7 @@ struct AskedDistance {
 struct Verdict {
   bool is_good = true;
   std::vector<std::string> faults;  ///< In words; empty if it is good.
+  std::vector<gp_Pnt> places;       ///< Where some of these are.
   double least = 0, most = 0;       ///< Sampled distances of the result to the source, as shares of |distance|.
   double volume = 0;
   std::size_t samples = 0;  ///< How many points these are of.

@@ -156,6 +156,7 @@ void Soup::build_tree() {
   std::iota(order_.begin(), order_.end(), 0);
   nodes_.push_back({});
   if (!triangles_.empty()) build(0, 0, static_cast<int>(order_.size()));
+  is_closed_ = open_sides() == 0;
 }
 
 void Soup::build(int node, int first, int count) {
@@ -338,32 +339,51 @@ gp_Vec Soup::outside(const SoupPoint& at) const {
   return unit_normal(*faces_[t.face].surface, at.uv.X(), at.uv.Y(), box) * faces_[t.face].sign;
 }
 
-double Soup::turns(const gp_Pnt& point) const {
-  double sum = 0;  // Van Oosterom and Strackee, 1983.
-  for (const Triangle& t : triangles_) {
-    const gp_XYZ a = t.points[0].XYZ() - point.XYZ(), b = t.points[1].XYZ() - point.XYZ(),
-                 c = t.points[2].XYZ() - point.XYZ();
-    const double la = a.Modulus(), lb = b.Modulus(), lc = c.Modulus();
-    sum += std::atan2(a.Dot(b.Crossed(c)), la * lb * lc + a.Dot(b) * lc + b.Dot(c) * la + c.Dot(a) * lb);
-  }
-  return sum / (2 * M_PI);
-}
-
 double Soup::volume() const {
   double sum = 0;
   for (const Triangle& t : triangles_) sum += t.points[0].XYZ().Dot(t.points[1].XYZ().Crossed(t.points[2].XYZ()));
   return sum / 6;
 }
 
-std::size_t Soup::open_sides() const {
-  std::map<std::array<int, 2>, int> ways;
+std::map<std::array<int, 2>, int> Soup::balance_of_sides() const {
+  std::map<std::array<int, 2>, int> balance;
   for (const Triangle& t : triangles_)
     for (int k = 0; k < 3; k++) {
       const int a = t.nodes[k], b = t.nodes[(k + 1) % 3];
-      if (a != b) ways[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+      if (a != b) balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
     }
+  return balance;
+}
+
+std::size_t Soup::open_sides() const {
   std::size_t open = 0;
-  for (const auto& [ends, balance] : ways) open += balance != 0;
+  for (const auto& [ends, balance] : balance_of_sides()) open += balance != 0;
+  return open;
+}
+
+template <class Found>
+void Soup::each_open_side(Found&& found) const {
+  const auto balance = balance_of_sides();
+  for (const Triangle& t : triangles_)
+    for (int k = 0; k < 3; k++) {
+      const int a = t.nodes[k], b = t.nodes[(k + 1) % 3];
+      if (a != b && balance.at({std::min(a, b), std::max(a, b)}) != 0) found(t, k);
+    }
+}
+
+std::vector<gp_Pnt> Soup::open_places() const {
+  std::vector<gp_Pnt> places;
+  each_open_side([&](const Triangle& t, int k) { places.push_back(t.points[k]); });
+  return places;
+}
+
+std::vector<int> Soup::open_faces() const {
+  std::vector<char> has_triangles(faces_.size(), 0), is_open(faces_.size(), 0);
+  for (const Triangle& t : triangles_) has_triangles[t.face] = 1;
+  each_open_side([&](const Triangle& t, int) { is_open[t.face] = 1; });
+  std::vector<int> open;
+  for (std::size_t f = 0; f < faces_.size(); ++f)
+    if (!has_triangles[f] || is_open[f]) open.push_back(static_cast<int>(f));
   return open;
 }
 

@@ -10,6 +10,8 @@
 #include <gp_Pnt.hxx>
 #include <gp_Pnt2d.hxx>
 #include <gp_Vec.hxx>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "offset/offset_surface.h"
@@ -78,14 +80,20 @@ class Soup {
   SoupPoint on_triangle(int triangle, double a, double b) const;
   /// The material's outside there.
   gp_Vec outside(const SoupPoint& at) const;
-  /// How often the triangles go round a point, by their solid angle: 1 in the material of a closed shape, 0 outside.
+  /// How often the triangles go round a point: 1 in the material of a closed shape, 0 outside. Of closed triangles by
+  /// what a ray crosses, of others by their solid angle, which is between whole numbers near gaps.
   double turns(const gp_Pnt& point) const;
+  bool is_closed() const { return is_closed_; }  ///< No side of a triangle is open.
   /// Whether the point lies in the closed shape.
   bool contains(const gp_Pnt& point) const { return std::abs(turns(point)) > 0.5; }
   /// The volume of the tessellation.
   double volume() const;
   /// How many sides of triangles have not as many other sides the other way: none of a tessellation that is closed.
   std::size_t open_sides() const;
+  /// Corners of triangles at such sides.
+  std::vector<gp_Pnt> open_places() const;
+  /// The faces that have such sides, or no triangles.
+  std::vector<int> open_faces() const;
   /// Corners of triangles that cross others without a common corner, up to `most`.
   std::vector<gp_Pnt> crossings(std::size_t most) const;
   /// The numbers of faces whose triangles cross so, the smaller first; each pair once, in order.
@@ -103,8 +111,15 @@ class Soup {
   };
   class FacingTest;
   void build_tree();
+  double solid_angle(const gp_Pnt& point) const;
+  std::optional<int> crossings_of_ray(const gp_Pnt& point, const gp_Vec& direction) const;
   void build(int node, int first, int count);
   void bound_normals(Node& node) const;
+  /// Of each side of triangles, by its corners: how many more there are the one way than the other.
+  std::map<std::array<int, 2>, int> balance_of_sides() const;
+  /// Calls `found` with each triangle that has a side without another, and the number of that.
+  template <class Found>
+  void each_open_side(Found&& found) const;
   Nearest search(const gp_Pnt& point, double reach, const Facing& among, bool is_any_enough) const;
   /// Calls `found` with every two triangles of this and the other soup that cross, until it returns false.
   template <class Found>
@@ -115,7 +130,7 @@ class Soup {
   std::vector<int> order_;
   std::vector<Node> nodes_;
   double deflection_;
-  bool is_complete_ = true;
+  bool is_complete_ = true, is_closed_ = false;
 };
 
 }  // namespace vdb_offset::cad

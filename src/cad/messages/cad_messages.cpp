@@ -158,7 +158,7 @@ std::string pack(const WriteCad& write) {
   packer.value(write.distance).value(write.diagonal).value(write.blend).value(write.fit_tolerance);
   packer.value(std::uint8_t{write.thick}).list(write.positions);
   packer.value(std::uint8_t{write.held}).value(write.clearance);
-  packer.list(write.obstacle_positions).list(write.obstacle_triangles);
+  packer.list(write.obstacle_positions).list(write.obstacle_triangles).value(write.seconds);
   return packer.take();
 }
 
@@ -177,6 +177,7 @@ WriteCad unpack_write(std::string_view bytes) {
   write.clearance = unpacker.value<double>();
   write.obstacle_positions = unpacker.list<Vec3d>();
   write.obstacle_triangles = unpacker.list<std::array<std::uint32_t, 3>>();
+  write.seconds = unpacker.value<double>();
   unpacker.end();
   require_corners(write.obstacle_triangles, write.obstacle_positions.size());
   return write;

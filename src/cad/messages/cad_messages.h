@@ -85,6 +85,7 @@ struct WriteCad {
   std::vector<Vec3d> obstacle_positions;
   std::vector<std::array<std::uint32_t, 3>> obstacle_triangles;
   std::vector<Vec3d> positions;  ///< Of the offset mesh, for what exact faces fail at; empty: nothing is written then.
+  double seconds = 0;            ///< Within which the reply is expected.
 };
 
 /// What a written file holds.

@@ -21,6 +21,7 @@ struct Attempt {
   MadeBody (*make)(const BodyTask&);  ///< \throw Standard_Failure
   bool is_of_mesh;                    ///< Takes triangles of the offset mesh where exact faces fail.
   unsigned seconds;                   ///< Of a processor at most; 0: as many as it takes.
+  double most_time;                   ///< How much of the time that is left it may take.
   double share;                       ///< How much of the whole is shown as done after it: most succeed at first.
 };
 

@@ -111,10 +111,13 @@ class BodyChecker {
     AskedDistance distance = AskedDistance::even(asked_.millimetres * asked_.write.distance);
     if (!body_.is_even() && !is_hybrid_ && !is_at_distances(distance)) return false;
     if (is_hybrid_) distance = sides();
-    const Verdict verdict = judge_offset(body_.source.shape, result_.shape, again, distance, {});
+    JudgeOptions options;
+    options.may_fold = is_hybrid_;
+    const Verdict verdict = judge_offset(body_.source.shape, result_.shape, again, distance, options);
     if (distance.is_even) report_measured(verdict.samples, verdict.least, verdict.most);
     if (verdict.is_good && body_.body.is_solid) facts.volume = volume_of(again) / std::pow(asked_.millimetres, 3);
     facts.gaps.insert(facts.gaps.end(), verdict.faults.begin(), verdict.faults.end());
+    made_.bad_places = verdict.places;
     return verdict.is_good;
   }
 
@@ -156,14 +159,27 @@ class BodyChecker {
     return false;
   }
 
+  /// The faces that stay: nothing is over them.
+  std::vector<Opening> openings() const {
+    std::vector<Opening> open;
+    std::size_t k = 0;
+    for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
+      if (body_.stays(k)) open.push_back({TopoDS::Face(face.Current()), result_.made_of[k], {}});
+    return open;
+  }
+
   /// Takes the solids between source and offset in place of the offset, which is good; false if they are not.
   bool make_thick() {
-    const std::vector<TopoDS_Shape> solids = thick_solids(body_.source.shape, result_.shape, asked_.write.distance > 0);
+    const double before = volume_of(body_.source.shape), after = volume_of(result_.shape);
+    std::vector<Opening> open = openings();
+    const std::vector<TopoDS_Shape> solids =
+        thick_solids(body_.source.shape, result_.shape, std::abs(after) > std::abs(before), open);
     if (!body_.body.is_solid || solids.empty()) {
-      gap("a shell of the source has no offset, or is not closed");
+      gap(open.empty() ? "a shell of the source has no offset, or is not closed"
+                       : "a shell of the source has no offset, or is not closed by the rims of its openings");
       return false;
     }
-    const double volume = std::abs(volume_of(result_.shape) - volume_of(body_.source.shape));
+    const double volume = std::abs(after - before);
     const TopoDS_Shape again = read_again(solids);
     if (again.IsNull()) return false;
     constexpr double kMostOff = 1e-3;  // of the volume, as it is found by numbers
@@ -178,8 +194,17 @@ class BodyChecker {
     std::size_t k = 0;
     for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
       made_.faces.emplace_back(body_.source.face_numbers[k], face.Current());
+    name_rims(open);
     made_.facts.volume = found / std::pow(asked_.millimetres, 3);
     return true;
+  }
+
+  void name_rims(const std::vector<Opening>& open) {
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < result_.made_of.size(); ++k) {
+      if (!body_.stays(k)) continue;
+      for (const TopoDS_Face& rim : open[next++].rim) made_.faces.emplace_back(body_.source.face_numbers[k], rim);
+    }
   }
 
   const OffsetBody& body_;

@@ -3,6 +3,7 @@
 
 #include <TopoDS_Shape.hxx>
 #include <cstddef>
+#include <gp_Pnt.hxx>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@ struct MadeBody {
   std::vector<TopoDS_Shape> shapes;  ///< Solids or shells, in millimetres.
   /// What faces became: their numbers in the body, and faces of the shapes, or compounds of some.
   std::vector<std::pair<std::size_t, TopoDS_Shape>> faces;
+  std::vector<gp_Pnt> bad_places;  ///< Where it is not good, if that is known; for the process that made it alone.
   bool is_good() const { return facts.made != io::CadMade::Nothing; }
 };
 

@@ -24,6 +24,7 @@ struct OffsetBody {
   BodyShape source;
   std::vector<FaceDistance> distances;  ///< Of each face; empty: all have the same.
   bool is_even() const { return distances.empty(); }
+  bool stays(std::size_t face) const { return !is_even() && !distances[face].at && distances[face].constant == 0; }
 };
 
 /// What is asked of a model, and how many millimetres its unit is.

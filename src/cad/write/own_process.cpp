@@ -5,12 +5,14 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <Standard_Failure.hxx>
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <fstream>
@@ -34,6 +36,14 @@ rlim_t addresses() {
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// Has this process ended by SIGALRM after some seconds.
+void ring_after(double seconds) {
+  constexpr double kLeast = 1e-3, kMost = 1e8;
+  const double after = std::clamp(seconds, kLeast, kMost), whole = std::floor(after);
+  const itimerval timer{{0, 0}, {static_cast<time_t>(whole), static_cast<suseconds_t>(1e6 * (after - whole))}};
+  ::setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
 }  // namespace
@@ -82,7 +92,7 @@ void write_apart(const WrittenModel& model, const std::string& format, const std
   if (status != 0) throw InvalidCad("expected a model that OpenCASCADE can write, got one that it cannot");
 }
 
-std::optional<std::string> in_own_process(const std::function<std::string()>& work, unsigned seconds,
+std::optional<std::string> in_own_process(const std::function<std::string()>& work, const MostTime& most,
                                           std::string& gap) {
   const MemoryFile reply;
   const pid_t child = ::fork();
@@ -93,7 +103,8 @@ std::optional<std::string> in_own_process(const std::function<std::string()>& wo
     ::getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, addresses() + kMostMemory);
     if (kMayLimit) ::setrlimit(RLIMIT_AS, &limit);
-    if (seconds > 0) limit_seconds(seconds);
+    if (most.of_processor > 0) limit_seconds(most.of_processor);
+    ring_after(most.in_all);
     try {
       reply.write(work());
     } catch (const Standard_Failure&) {
@@ -107,8 +118,10 @@ std::optional<std::string> in_own_process(const std::function<std::string()>& wo
   while (::waitpid(child, &status, 0) < 0)
     if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
   if (status == 0) return reply.bytes();
-  gap = WIFSIGNALED(status) ? "OpenCASCADE is ended by signal " + std::to_string(WTERMSIG(status)) + " by the result"
-                            : std::string("OpenCASCADE fails with the result");
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  gap = signal == SIGXCPU || signal == SIGALRM ? std::string("OpenCASCADE takes too long with the result")
+        : signal != 0 ? "OpenCASCADE is ended by signal " + std::to_string(signal) + " by the result"
+                      : std::string("OpenCASCADE fails with the result");
   return std::nullopt;
 }
 
@@ -116,7 +129,9 @@ void limit_seconds(unsigned seconds) {
   rusage used{};
   ::getrusage(RUSAGE_SELF, &used);
   const rlim_t end = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + seconds;
-  const rlimit time{end, end};
+  rlimit time{};
+  ::getrlimit(RLIMIT_CPU, &time);
+  time.rlim_cur = std::min(end, time.rlim_max);
   ::setrlimit(RLIMIT_CPU, &time);
 }
 

@@ -30,9 +30,15 @@ class MemoryFile {
 /// Writes a file in a process of its own: what OpenCASCADE's writer sets for units, its reader would take for its own.
 void write_apart(const WrittenModel& model, const std::string& format, const std::string& path);
 
-/// Does work in a process of its own, for some seconds of a processor at most unless they are 0. Nothing if that is
-/// ended by a signal or an exception; `gap` then says so.
-std::optional<std::string> in_own_process(const std::function<std::string()>& work, unsigned seconds, std::string& gap);
+/// How long a process may take: seconds of a processor, 0: any number; and seconds by the clock, > 0.
+struct MostTime {
+  unsigned of_processor;
+  double in_all;
+};
+
+/// Does work in a process of its own. Nothing if that is ended by a signal or an exception; `gap` then says so.
+std::optional<std::string> in_own_process(const std::function<std::string()>& work, const MostTime& most,
+                                          std::string& gap);
 
 /// Lets this process have so many more seconds of a processor.
 void limit_seconds(unsigned seconds);

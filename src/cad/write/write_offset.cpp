@@ -3,6 +3,7 @@
 
 #include <Standard_Failure.hxx>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -26,6 +27,10 @@ constexpr unsigned kMostHolding = 120;  // seconds, of the whole model with its 
 // The share that is shown as done once all bodies are made.
 constexpr double kBodiesMade = 0.9;
 
+// Shares of the time that may be over once all exact faces have been tried, and once triangles have been.
+constexpr double kTimeOfExact = 0.5, kTimeOfBodies = 0.9;
+constexpr double kTimeOfBody = 0.25;  // of what is left for an attempt at least, if need be
+
 class OffsetWriter {
  public:
   OffsetWriter(const CadModel& model, const std::vector<BodyMesh>& meshes, const io::WriteCad& write)
@@ -43,11 +48,7 @@ class OffsetWriter {
     {
       const ProgressPart part(0, kBodiesMade);
       if (asked_.write.held) hold_all();
-      for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        const auto count = static_cast<double>(bodies_.size());
-        const ProgressPart of_body(static_cast<double>(b) / count, static_cast<double>(b + 1) / count);
-        if (!made_[b].is_good()) make(b);
-      }
+      make_all();
     }
     sum_up();
     write_file();
@@ -56,6 +57,12 @@ class OffsetWriter {
   }
 
  private:
+  /// Until a share of the time is over.
+  double seconds_until(double share) const {
+    return share * asked_.write.seconds -
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+  }
+
   /// Makes all bodies with their faces held back where fronts meet.
   void hold_all() {
     std::string gap;
@@ -73,7 +80,7 @@ class OffsetWriter {
       packer.value(std::uint64_t{held.held}).value(held.least_held);
       return packer.take();
     };
-    const std::optional<std::string> bytes = in_own_process(work, kMostHolding, gap);
+    const auto bytes = in_own_process(work, {kMostHolding, seconds_until(time_of_exact())}, gap);
     if (!bytes) {
       written_.gaps.push_back(std::move(gap));
       written_.gaps.push_back("holding faces back may take " + std::to_string(kMostHolding) + " s, and 2 GiB");
@@ -97,28 +104,44 @@ class OffsetWriter {
     }
   }
 
-  /// Tries all ways to make a body; only the last ones if its faces were to be held back.
-  void make(std::size_t b) {
-    const BodyTask task{bodies_[b], asked_};
-    std::vector<std::string> gaps = std::move(made_[b].facts.gaps);
+  /// The share of the time that may be over once all that needs no mesh has been tried.
+  double time_of_exact() const { return asked_.write.positions.empty() ? kTimeOfBodies : kTimeOfExact; }
+
+  /// Tries one way after the other with all bodies that are not made; only the last ones if their faces were to be held
+  /// back.
+  void make_all() {
     double shown = 0;
     for (const Attempt& attempt : attempts()) {
       const ProgressPart part(shown, attempt.share);
       shown = attempt.share;
-      if (!attempt.may(task) || (asked_.write.held && !attempt.is_of_mesh)) continue;
-      std::string gap;
-      const auto bytes = in_own_process([&] { return pack(tried(attempt, task)); }, attempt.seconds, gap);
-      MadeBody made;
-      if (bytes) made = unpack_body(*bytes);
-      else made.facts.gaps.push_back(std::move(gap));
-      if (gaps.empty()) gaps = made.facts.gaps;  // the first says most
-      if (!made.is_good()) continue;
-      if (made.facts.made == io::CadMade::Hybrid) made.facts.gaps = std::move(gaps);
-      made_[b] = std::move(made);
-      return;
+      if (asked_.write.held && !attempt.is_of_mesh) continue;
+      std::vector<std::size_t> left;
+      for (std::size_t b = 0; b < bodies_.size(); ++b)
+        if (!made_[b].is_good() && attempt.may({bodies_[b], asked_})) left.push_back(b);
+      const auto count = static_cast<double>(left.size());
+      for (std::size_t i = 0; i < left.size(); ++i) {
+        const auto at = static_cast<double>(i);
+        const ProgressPart of_body(at / count, (at + 1) / count);
+        // Most take little, and leave the rest to others.
+        const double left_over = seconds_until(attempt.is_of_mesh ? kTimeOfBodies : time_of_exact());
+        make(left[i], attempt, left_over * attempt.most_time * std::max(kTimeOfBody, 1 / (count - at)));
+      }
     }
-    made_[b].facts.missing = bodies_[b].body.faces.size();
-    made_[b].facts.gaps = std::move(gaps);
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      if (!made_[b].is_good()) made_[b].facts.missing = bodies_[b].body.faces.size();
+  }
+
+  void make(std::size_t b, const Attempt& attempt, double seconds) {
+    std::vector<std::string> gaps = std::move(made_[b].facts.gaps);
+    MadeBody made;
+    std::string gap;
+    const auto work = [&] { return pack(tried(attempt, {bodies_[b], asked_})); };
+    if (const auto bytes = in_own_process(work, {attempt.seconds, seconds}, gap)) made = unpack_body(*bytes);
+    else made.facts.gaps.push_back(std::move(gap));
+    if (gaps.empty()) gaps = made.facts.gaps;  // the first says most
+    if (!made.is_good()) made = {};
+    if (!made.is_good() || made.facts.made == io::CadMade::Hybrid) made.facts.gaps = std::move(gaps);
+    made_[b] = std::move(made);
   }
 
   static MadeBody tried(const Attempt& attempt, const BodyTask& task) {
@@ -260,6 +283,7 @@ class OffsetWriter {
     return true;
   }
 
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   const CadModel& model_;
   const Asked asked_;
   std::vector<OffsetBody> bodies_;

@@ -120,9 +120,9 @@ std::vector<double> CadSurface::distance_errors_near(std::span<const std::uint32
   return worker_.distance_errors(of_faces);
 }
 
-CadWritten CadSurface::write(const WriteCad& write, const ProgressCallback& progress) const {
+CadWritten CadSurface::write(WriteCad write, const ProgressCallback& progress) const {
   const std::lock_guard lock(one_at_a_time_);
-  return worker_.write(write, progress);
+  return worker_.write(std::move(write), progress);
 }
 
 }  // namespace vdb_offset::io

@@ -30,7 +30,7 @@ class CadSurface : public ExactSurface {
                                            std::span<const Vec3d> points) const override;
 
   const CadMesh& mesh() const { return *mesh_; }
-  CadWritten write(const WriteCad& write, const ProgressCallback& progress) const;
+  CadWritten write(WriteCad write, const ProgressCallback& progress) const;
 
  private:
   /// Where a vertex is on one of its faces.

@@ -89,8 +89,11 @@ struct CadWorker::State {
   std::optional<WorkerProcess> process;
   std::chrono::steady_clock::duration spent{};  // of those seconds, with all that was asked so far
 
+  static constexpr double kForever = 1e8;  // seconds, three years; more would not be counted
+
+  double seconds_left() const { return std::min(seconds, kForever) - std::chrono::duration<double>(spent).count(); }
+
   Deadline deadline() const {
-    constexpr double kForever = 1e8;  // seconds, three years; more would not be counted
     if (!(seconds < kForever)) return std::nullopt;
     return std::chrono::steady_clock::now() - spent +
            std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
@@ -243,7 +246,8 @@ std::vector<Vec3d> CadWorker::offset_points(std::span<const CadAim> aims, std::s
   }
 }
 
-CadWritten CadWorker::write(const WriteCad& write, const ProgressCallback& progress) {
+CadWritten CadWorker::write(WriteCad write, const ProgressCallback& progress) {
+  write.seconds = state_->seconds_left();
   const std::string reply = request(CadRequest::Write, pack(write), progress);
   try {
     return unpack_written(reply);

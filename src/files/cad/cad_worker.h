@@ -44,7 +44,7 @@ class CadWorker {
   std::vector<Vec3d> offset_points(std::span<const CadAim> aims, std::span<const CadPlace> places);
 
   /// Makes the model's offset, and the bytes of a file of it. `progress` is called with Stage::Write.
-  CadWritten write(const WriteCad& write, const ProgressCallback& progress = {});
+  CadWritten write(WriteCad write, const ProgressCallback& progress = {});
 
   /// Another request, and the payload of its reply. (The kinds that have a function are asked for by that.)
   std::string request(CadRequest kind, std::string_view payload, const ProgressCallback& progress = {});

@@ -22,7 +22,7 @@ CadWorker& CadWorker::operator=(CadWorker&&) noexcept = default;
 // Never called: there is none of these.
 std::vector<double> CadWorker::distance_errors(std::span<const CadPoint>) { return {}; }
 std::vector<Vec3d> CadWorker::offset_points(std::span<const CadAim>, std::span<const CadPlace>) { return {}; }
-CadWritten CadWorker::write(const WriteCad&, const ProgressCallback&) { return {}; }
+CadWritten CadWorker::write(WriteCad, const ProgressCallback&) { return {}; }
 std::string CadWorker::request(CadRequest, std::string_view, const ProgressCallback&) { return {}; }
 
 }  // namespace vdb_offset::io

@@ -8,6 +8,7 @@
 // the lengths of edges, without sharp ones. Edges that do not have two faces in opposite directions are passed over.
 #include "document/face_shapes.h"
 
+#include <openvdb/math/BBox.h>
 #include <openvdb/math/Mat3.h>
 
 #include <algorithm>
@@ -45,6 +46,9 @@ constexpr double kCylinder = 0.02;
 constexpr std::size_t kMostBeside = 16;
 // Faces that look up do so within less than this angle. Rounding: what is drawn at 45 degrees is not among them.
 constexpr double kFacing = 45 * kOneDegree - 1e-6;
+
+// How far faces of one end may lie apart, as a share of the diagonal. Not measured: far above rounding.
+constexpr double kEnd = 1e-4;
 
 /// For each vertex the first one at its position.
 std::vector<std::uint32_t> first_at_positions(PolygonView mesh) {
@@ -163,6 +167,24 @@ void FaceShapes::find_neighbours() {
 std::vector<std::uint8_t> FaceShapes::facing(int side) const {
   std::vector<std::uint8_t> marks;
   for (const Vec3d& area : area_) marks.push_back(side * area[2] > std::cos(kFacing) * area.length());
+  return marks;
+}
+
+std::vector<std::uint8_t> FaceShapes::flat_end(std::size_t axis, int side) const {
+  openvdb::BBoxd box;
+  for (const auto v : mesh_.corners) box.expand(mesh_.positions[v]);
+  const double slack = kEnd * box.extents().length();
+  // How far each face reaches, if it looks that way.
+  std::vector<double> reach(area_.size(), -INFINITY);
+  double farthest = -INFINITY;
+  for (std::size_t f = 0; f < area_.size(); ++f) {
+    if (!(side * area_[f][axis] > std::cos(kOneDegree) * area_[f].length())) continue;
+    reach[f] = INFINITY;
+    for (const auto v : mesh_.face(f)) reach[f] = std::min(reach[f], side * mesh_.positions[v][axis]);
+    farthest = std::max(farthest, reach[f]);
+  }
+  std::vector<std::uint8_t> marks;
+  for (const double each : reach) marks.push_back(each > -INFINITY && each >= farthest - slack);
   return marks;
 }
 

@@ -28,6 +28,9 @@ class FaceShapes {
 
   /// Of each face: 1 if it looks up (side 1) or down (-1) the z axis, within less than 45 degrees.
   std::vector<std::uint8_t> facing(int side) const;
+  /// Of each face: 1 if it looks along an axis to one side (1 or -1), within a degree, and lies as far that way as any
+  /// such face, within 0.01 % of the mesh's diagonal.
+  std::vector<std::uint8_t> flat_end(std::size_t axis, int side) const;
   /// Of each face: 1 if it is on a surface that is curved outward (side 1) or inward (-1): on a ring that is, or else
   /// by most of what its facet bends from others.
   std::vector<std::uint8_t> curved(int side) const;

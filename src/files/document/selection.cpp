@@ -36,11 +36,9 @@ struct SelectorWord {
 constexpr SelectorWord kSelectorWords[] = {{"group", Selector::By::Group}, {"material", Selector::By::Material},
                                            {"faces", Selector::By::File},  {"face", Selector::By::Face},
                                            {"name", Selector::By::Name},   {"color", Selector::By::Colour}};
-constexpr SelectorWord kShapeWords[] = {{"holes", Selector::By::Holes},
-                                        {"concave", Selector::By::Concave},
-                                        {"convex", Selector::By::Convex},
-                                        {"up", Selector::By::Up},
-                                        {"down", Selector::By::Down}};
+constexpr SelectorWord kShapeWords[] = {{"holes", Selector::By::Holes},   {"concave", Selector::By::Concave},
+                                        {"convex", Selector::By::Convex}, {"up", Selector::By::Up},
+                                        {"down", Selector::By::Down},     {"planar", Selector::By::Planar}};
 
 bool is_shape(const Selector& selector) {
   return std::any_of(std::begin(kShapeWords), std::end(kShapeWords),
@@ -172,10 +170,13 @@ std::vector<std::uint8_t> marks_of_shape(const MeshFile& mesh, const FaceShapes&
     return marks;
   }
   const bool up = selector.by == Selector::By::Up, convex = selector.by == Selector::By::Convex;
-  if (up || selector.by == Selector::By::Down) marks = shapes.facing(up ? 1 : -1);
+  if (selector.by == Selector::By::Planar)
+    marks = shapes.flat_end(static_cast<std::size_t>(selector.name[1] - 'x'), selector.name[0] == '+' ? 1 : -1);
+  else if (up || selector.by == Selector::By::Down) marks = shapes.facing(up ? 1 : -1);
   else marks = shapes.curved(convex ? 1 : -1);
   if (std::find(marks.begin(), marks.end(), 1) == marks.end())
-    throw InvalidOption(fmt::format("{}: expected faces that are '{}', found none", mesh.path, in_words(selector.by)));
+    throw InvalidOption(fmt::format("{}: expected faces that are '{}{}{}', found none", mesh.path,
+                                    in_words(selector.by), selector.name.empty() ? "" : ":", selector.name));
   return marks;
 }
 
@@ -213,7 +214,18 @@ std::optional<double> parse_diameter(const std::string& text) {
   return number;
 }
 
+/// \throw InvalidOption for an end of no axis
+std::optional<Selector> parse_end(const std::string& text) {
+  const std::string planar = in_words(Selector::By::Planar);
+  if (text != planar && !text.starts_with(planar + ':')) return std::nullopt;
+  const std::string end = text.substr(std::min(text.size(), planar.size() + 1));
+  if (end.size() != 2 || (end[0] != '+' && end[0] != '-') || end[1] < 'x' || end[1] > 'z')
+    throw InvalidOption(fmt::format("expected an end along an axis, as in 'planar:+z' or 'planar:-x', got '{}'", text));
+  return Selector{Selector::By::Planar, end};
+}
+
 std::optional<Selector> parse_shape(const std::string& text) {
+  if (const std::optional<Selector> end = parse_end(text)) return end;
   for (const auto& [word, by] : kShapeWords)
     if (text == word) return Selector{by, {}};
   const std::string holes = in_words(Selector::By::Holes);
@@ -243,11 +255,12 @@ Selector parse_selector(const std::string& text) {
   if (!name.empty())
     for (const auto& [word, by] : kSelectorWords)
       if (kind == word) return {by, name};
-  throw InvalidOption(fmt::format(
-      "expected 'group=NAME', 'material=NAME', 'faces=FILE', 'holes', 'holes<D', 'holes>D', 'concave', "
-      "'convex', 'up', 'down', or of a CAD model 'face=N', 'name=NAME' or 'color=RRGGBB', or 'not:' and one "
-      "of these, got '{}'",
-      text));
+  throw InvalidOption(
+      fmt::format("expected 'group=NAME', 'material=NAME', 'faces=FILE', 'holes', 'holes<D', 'holes>D', 'concave', "
+                  "'convex', 'up', 'down', 'planar:+z', or of a CAD model 'face=N', 'name=NAME' or 'color=RRGGBB', or "
+                  "'not:' and one "
+                  "of these, got '{}'",
+                  text));
 }
 
 const char* in_words(Selector::By by) {

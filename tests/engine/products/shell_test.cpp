@@ -397,3 +397,28 @@ using U8 = std::uint8_t;
 using I16 = std::int16_t;
 
 }  // namespace
+
+TEST_CASE("shell: an opening has a flat rim, and vertices inside it are not in the way", "[shell]") {
+  const double size = 1, d = 0.2;
+  const Polygons box = shapes::box(Vec3d(size, size, size), 20, false);
+  for (const double side : {-1.0, 1.0}) {
+    OffsetOptions options;
+    options.distance = side * d;
+    options.off_source = true;
+    options.corners = Corners::Miter;
+    for (std::size_t f = 0; f < box.face_count(); ++f) {
+      const auto face = box.view().face(f);
+      const bool is_top = std::ranges::all_of(face, [&](auto v) { return box.positions[v].z() == size / 2; });
+      options.only.push_back(!is_top);
+    }
+    const Shell cup = shell_of(box.view(), offset(box.view(), options), options);
+    check_solid(cup);
+    const double within = size - 2 * d, around = size + 2 * d;
+    const double volume = side < 0 ? 1 - within * within * (size - d) : around * around * (size + d) - 1;
+    CHECK(cup.facts.volume == Approx(volume).epsilon(1e-5));
+    CHECK(cup.facts.rim_quads == 4 * 20);
+    for (std::size_t f = 2 * cup.skin_faces(); f < cup.polygons.face_count(); ++f)
+      for (const auto v : cup.polygons.view().face(f))
+        CHECK(cup.polygons.positions[v].z() == Approx(size / 2).margin(1e-9));
+  }
+}

@@ -71,7 +71,7 @@ std::span<const HelpTopic> help_topics() {
       {"parts", "Parts and surroundings", {"only", "border", "symmetry", "obstacle", "weld", "orient"}},
       {"solids",
        "Solids and iso-surfaces",
-       {"shell", "inner", "mode", "adaptivity", "inside", "keep-specks", "transport"}},
+       {"shell", "open", "inner", "mode", "adaptivity", "inside", "keep-specks", "transport"}},
       {"layers",
        "Layers of cells",
        {"layers",  "first-height", "total-thickness", "last-height", "growth",       "y-plus",    "layers-of",

@@ -113,15 +113,16 @@ void declare_tolerance(CommandLine& line, Draft& draft) {
 /// Declares the options that say which faces move, and what is around them.
 void declare_parts(CommandLine& line, Draft& draft) {
   Request& request = draft.request;
-  line.repeated("--only", "PART",
-                "Offset only this part; the rest stays, as an obstacle: 'group=NAME', 'material=NAME', "
-                "'faces=FILE' (indices from 0, or a 0 or 1 for each face), 'holes' (round ones; 'holes<8' or 'holes>8' "
-                "by diameter), 'concave', 'convex', 'up', 'down', or of a CAD model 'face=N' (from 1), 'name=NAME' or "
-                "'color=RRGGBB'; 'not:PART' is all but that; may be repeated",
-                [&request](const std::string& text) {
-                  request.only_texts.push_back(text);
-                  request.only.push_back(parse_part("--only", text));
-                });
+  line.repeated(
+      "--only", "PART",
+      "Offset only this part; the rest stays, as an obstacle: 'group=NAME', 'material=NAME', "
+      "'faces=FILE' (indices from 0, or a 0 or 1 for each face), 'holes' (round ones; 'holes<8' or 'holes>8' "
+      "by diameter), 'concave', 'convex', 'up', 'down', 'planar:+z' (the flat end that way), or of a CAD model "
+      "'face=N' (from 1), 'name=NAME' or 'color=RRGGBB'; 'not:PART' is all but that; may be repeated",
+      [&request](const std::string& text) {
+        request.only_texts.push_back(text);
+        request.only.push_back(parse_part("--only", text));
+      });
   line.option("--border", "MODE",
               "The edge of that part: 'slide' along the surface that stays, 'fixed' or 'free' [slide]", request.border,
               parse_border);
@@ -147,6 +148,14 @@ void declare_products(CommandLine& line, Request& request) {
             "Write the source and its offset as one closed solid, joined by a rim where the surface is open; with "
             "--mode iso: a hollow solid, the source's own faces and one clean cavity, or skin",
             request.shell);
+  line.repeated(
+      "--open", "PART",
+      "With --shell: no wall over this part, named as for --only, as in 'planar:+z' or 'face=3'; the rim lies "
+      "in its surface; may be repeated",
+      [&request](const std::string& text) {
+        request.only_texts.push_back("not:" + text);
+        request.only.push_back(parse_opening(text));
+      });
   line.option("--inner", "E",
               "With --shell: put the inner skin this far inward, not on the source; with --mode iso both skins are new",
               [&request](const std::string& text) { request.inner = parse_inner(text, request); });
@@ -198,7 +207,7 @@ void declare_cad(CommandLine& line, Request& request) {
   line.option(
       "--deflection", "TOL",
       "CAD models: triangles are at most this far from the model's face: world units, or percent of the diagonal [a "
-      "hundredth of the distance]",
+      "hundredth of the distance; a twentieth for a CAD model as OUTPUT]",
       request.deflection, parse_deflection);
   line.option("--angle", "A",
               "CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",

@@ -70,7 +70,7 @@ void require_with_files(const Request& request) {
                           "--side-of", "--symmetry", "--miter-limit", "--taper", "--collision merge", "--corners arc"},
                          Excludes,
                          {kModel}},
-                        {{"--distance-of", "--only"}, Excludes, {kHollowModel}},
+                        {{"--distance-of"}, Excludes, {kHollowModel}},
                         {{"--grid", "--isovalue"}, NeedsAnyOf, {kLevelSet}}});
 }
 
@@ -178,9 +178,9 @@ void require_together(const GivenNames& given) {
   using enum OptionRule::Relation;
   const std::vector<OptionRule> rules = {
       {{"--adaptivity", "--inside", "--keep-specks", "--transport"}, NeedsAnyOf, {"--mode iso"}},
-      {{"--only",    "--border",  "--symmetry", "--obstacle",  "--distance-from", "--collision", "--taper",
-        "--corners", "--solver",  "--states",   "--paths",     "--html",          "--save-vdb",  "--normals keep",
-        "--layers",  "--heights", "--fit",      "--tolerance", "--distance-of",   "--blend"},
+      {{"--only",         "--open",    "--border",  "--symmetry", "--obstacle",  "--distance-from", "--collision",
+        "--taper",        "--corners", "--solver",  "--states",   "--paths",     "--html",          "--save-vdb",
+        "--normals keep", "--layers",  "--heights", "--fit",      "--tolerance", "--distance-of",   "--blend"},
        Excludes,
        {"--mode iso"}},
       {{"--first-height", "--y-plus", "--total-thickness", "--last-height", "--growth", "--layers-of"},
@@ -224,7 +224,7 @@ void require_together(const GivenNames& given) {
       {{"--fit"}, NeedsAnyOf, {"--clearance"}},
       {{"--clearance"}, NeedsAnyOf, {"--obstacle", "--fit"}},
       {{"--side-of"}, Excludes, {"--distance-xy", "--distance-z", "--fit", "--inner", "--mode iso"}},
-      {{"--inner"}, NeedsAnyOf, {"--shell"}},
+      {{"--inner", "--open"}, NeedsAnyOf, {"--shell"}},
       {{"--distance-from"}, Excludes, {"--distance"}},
       {{"--voxel-size"}, Excludes, {"--voxels-per-distance"}},
       {{"--quiet"}, Excludes, {"--verbose"}},
@@ -252,7 +252,7 @@ void require_options_for(const Request& request, bool curves, const char* meshes
   if (const char* const of_curves = first_given(request, {"--close", "--flatten"}); of_curves && !curves)
     throw UsageError(fmt::format("{}: expected curves, as this is not for meshes", of_curves));
   const char* of_meshes = first_given(
-      request, {"--only", "--border", "--distance-of", "--symmetry", "--periodic", "--obstacle", "--shell",
+      request, {"--only", "--border", "--distance-of", "--symmetry", "--periodic", "--obstacle", "--shell", "--open",
                 "--mode iso", "--tolerance", "--corners arc", "--orient fix-direction-only", "--orient fix-cavities",
                 "--deflection", "--fit", "--taper", "--fill-with", "--fill-quads", "--caps"});
   if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";

@@ -166,7 +166,7 @@ struct Request {
   std::size_t max_memory = 0;               ///< Bytes.
   bool close = false;                       ///< Join ends of curves that are near each other.
   io::VdbReading level_set;                 ///< Which surface of an OpenVDB file is the mesh.
-  std::optional<GivenDistance> deflection;  ///< Of CAD models; none: a hundredth of the distance.
+  std::optional<GivenDistance> deflection;  ///< Of CAD models; none: by the distance.
   double fit_tolerance = 0;                 ///< Of written CAD models, world units; 0: 1e-4 distances.
   bool exact = false;                       ///< Write a CAD model of exact faces, or none.
   bool cuts = false;                        ///< --collision cut: of an output that is a CAD model.

@@ -97,7 +97,9 @@ class ResultMaker {
   bool has_to_be_valid() const { return options_.collision == Collision::Limit; }
 
   ConstrainedSurface constrained(const PreparedMesh::Marched& marched) const {
-    ConstrainedSurface constrained = mesh_.constrained(marched, options_.off_source);
+    // Faces that stay are in the way of a shell of a part, but not in the shell: its rim slides over them.
+    const std::size_t resting = options_.off_source && mesh_.slides() ? mesh_.mesh().face_count() : 0;
+    ConstrainedSurface constrained = mesh_.constrained(marched, options_.off_source, resting);
     constrained.with_rim = options_.off_source;
     constrained.file = file_ ? &*file_ : nullptr;
     return constrained;
