@@ -31,14 +31,15 @@ OffsetCadResult made_in_part(const OffsetCadRequest& request) {
 
 MadeBody trimmed(const BodyTask& task, const OffsetCadResult& result) {
   if (result.shape.IsNull() || !result.gaps.empty()) return {};
-  return check(task, trim_offset(task.body.source.shape, result, task.request().distance));
+  if (task.is_even_solid()) return check(task, trim_offset(task.body.source.shape, result, task.request().distance));
+  return check(task, trim_offset(task.body.faces_that(false), result, *task.body.distance_of_moved()));
 }
 
 /// With the source's topology, as far as the distance leaves it; crossing faces are trimmed.
 MadeBody make_alike(const BodyTask& task) {
   const OffsetCadResult result = made_in_part(task.request());
   MadeBody made = check(task, result);
-  if (made.is_good() || !task.is_even_solid()) return made;
+  if (made.is_good() || !task.may_be_trimmed()) return made;
   limit_seconds(kTrial);
   MadeBody other = trimmed(task, result);
   return other.is_good() ? other : made;
@@ -90,6 +91,7 @@ MadeBody make_triangles(const BodyTask& task) { return make_with_triangles(task,
 
 bool any(const BodyTask&) { return true; }
 bool is_even_solid(const BodyTask& task) { return task.is_even_solid(); }
+bool may_be_trimmed(const BodyTask& task) { return task.may_be_trimmed(); }
 bool may_vanish(const BodyTask& task) { return task.is_even_solid() && task.request().distance < 0; }
 bool is_thin(const BodyTask& task) { return task.is_even_solid() && !task.asked.write.thick; }
 bool has_mesh(const BodyTask& task) { return !task.asked.write.positions.empty(); }
@@ -104,7 +106,7 @@ bool has_small_mesh(const BodyTask& task) {
 constexpr Attempt kAttempts[] = {
     {any, make_alike, false, 0, 0.6, 0.8},
     {may_vanish, make_nothing, false, kTrial, 0.3, 0.82},
-    {is_even_solid, make_turned, false, kOther, 0.3, 0.86},
+    {may_be_trimmed, make_turned, false, kOther, 0.3, 0.86},
     {is_thin, make_cells, false, kOther, 0.3, 0.9},
     {is_even_solid, join_by_arcs, false, kOther, 0.5, 0.92},
     {is_even_solid, join_by_intersection, false, kOther, 1, 0.94},

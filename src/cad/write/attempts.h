@@ -13,6 +13,9 @@ struct BodyTask {
   const Asked& asked;
   OffsetCadRequest request() const { return request_of(body, asked); }
   bool is_even_solid() const { return body.is_even() && body.body.is_solid; }
+  /// Whether it is to be a thick solid with openings, and of one thickness.
+  bool is_opened_solid() const { return asked.write.thick && body.body.is_solid && body.distance_of_moved(); }
+  bool may_be_trimmed() const { return is_even_solid() || is_opened_solid(); }
 };
 
 /// A way to offset a body.

@@ -6,11 +6,14 @@
 #include <TopoDS.hxx>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "ground/mesh/point_triangle.h"
 #include "ground/process/progress.h"
 #include "judge/judge.h"
 #include "judge/parameters.h"
 #include "judge/soup.h"
+#include "judge/soup_samples.h"
 #include "write/own_process.h"
 #include "write/thick_solids.h"
 #include "write/write_model.h"
@@ -144,36 +147,82 @@ class BodyChecker {
     std::size_t samples = 0;
     double least = 1, most = 1, worst = 0;
     std::size_t k = 0;
-    for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k) {
-      const AtParameters here =
-          measure_at_parameters(TopoDS::Face(face.Current()), TopoDS::Face(result_.made_of[k]), body_.distances[k],
-                                kSamples / result_.made_of.size() + 1, distance);
-      samples += here.samples;
-      least = std::min(least, here.least);
-      most = std::max(most, here.most);
-      worst = std::max(worst, here.worst);
-    }
+    for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
+      for (const TopoDS_Face& made : faces_made_of(k)) {
+        const AtParameters here = measure_at_parameters(TopoDS::Face(face.Current()), made, body_.distances[k],
+                                                        kSamples / result_.made_of.size() + 1, distance);
+        samples += here.samples;
+        least = std::min(least, here.least);
+        most = std::max(most, here.most);
+        worst = std::max(worst, here.worst);
+      }
     report_measured(samples, least, most);
-    if (worst <= kMostOff * asked_.largest()) return true;
+    if (worst <= kMostOff * asked_.largest()) return !asked_.write.thick || is_wall_thick();
     gap("a face is off its distance by up to " + std::to_string(worst / asked_.millimetres));
     return false;
   }
+
+  /// What a face became: a trimmed one may be in pieces; a null one if nothing is left.
+  std::vector<TopoDS_Face> faces_made_of(std::size_t k) const {
+    std::vector<TopoDS_Face> faces;
+    if (!result_.made_of[k].IsNull())
+      for (TopExp_Explorer face(result_.made_of[k], TopAbs_FACE); face.More(); face.Next())
+        faces.push_back(TopoDS::Face(face.Current()));
+    if (faces.empty()) faces.emplace_back();
+    return faces;
+  }
+
+  /// Whether all that has moved is as far from the faces that moved as it ought to be, to 1 %, if all of them go by one
+  /// distance. Where these end at an opening, walls go on in its surface, and may be nearer to the edge between.
+  bool is_wall_thick() {
+    constexpr double kLeast = 0.99, kOff = 0.002;  // distances; the latter of triangles from the faces
+    const std::optional<double> asked = body_.distance_of_moved();
+    if (!asked) return true;
+    const double far = std::abs(*asked);
+    const Soup from(body_.faces_that(false), kOff * far, kOff * far, 0.25);
+    const Soup open(body_.faces_that(true), kOff * far, kOff * far, 0.25);
+    TopoDS_Compound moved;
+    BRep_Builder builder;
+    builder.MakeCompound(moved);
+    for (std::size_t k = 0; k < result_.made_of.size(); ++k)
+      for (const TopoDS_Face& face : faces_made_of(k))
+        if (!body_.stays(k) && !face.IsNull()) builder.Add(moved, face);
+    for (const SoupPoint& at : spread(Soup::of_result(moved, far), JudgeOptions().samples)) {
+      const Soup::Nearest nearest = from.nearest(at.point, kLeast * far, {nullptr, {}});
+      if (nearest.triangle < 0) continue;
+      const gp_Pnt foot = foot_of(at.point, from.triangles()[nearest.triangle]);
+      if (open.nearest(foot, 5 * kOff * far, {nullptr, {}}).triangle >= 0) continue;
+      gap("the wall is thinner than the distance: " + std::to_string(nearest.distance / far) + " of it, as at " +
+          in_file(at.point.X()) + " " + in_file(at.point.Y()) + " " + in_file(at.point.Z()));
+      return false;
+    }
+    return true;
+  }
+
+  static gp_Pnt foot_of(const gp_Pnt& point, const Soup::Triangle& triangle) {
+    const auto vector = [](const gp_Pnt& p) { return Vec3d(p.X(), p.Y(), p.Z()); };
+    const auto& [a, b, c] = triangle.points;
+    const Vec3d foot = closest_on_triangle(vector(point), vector(a), vector(b), vector(c)).point;
+    return {foot.x(), foot.y(), foot.z()};
+  }
+
+  std::string in_file(double millimetres) const { return std::to_string(millimetres / asked_.millimetres); }
 
   /// The faces that stay: nothing is over them.
   std::vector<Opening> openings() const {
     std::vector<Opening> open;
     std::size_t k = 0;
     for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
-      if (body_.stays(k)) open.push_back({TopoDS::Face(face.Current()), result_.made_of[k], {}});
+      if (body_.stays(k)) open.push_back({TopoDS::Face(face.Current()), result_.made_of[k]});
     return open;
   }
 
   /// Takes the solids between source and offset in place of the offset, which is good; false if they are not.
   bool make_thick() {
     const double before = volume_of(body_.source.shape), after = volume_of(result_.shape);
-    std::vector<Opening> open = openings();
-    const std::vector<TopoDS_Shape> solids =
-        thick_solids(body_.source.shape, result_.shape, std::abs(after) > std::abs(before), open);
+    const std::vector<Opening> open = openings();
+    const ThickSolids thick = thick_solids(body_.source.shape, result_.shape, std::abs(after) > std::abs(before), open);
+    const std::vector<TopoDS_Shape>& solids = thick.solids;
     if (!body_.body.is_solid || solids.empty()) {
       gap(open.empty() ? "a shell of the source has no offset, or is not closed"
                        : "a shell of the source has no offset, or is not closed by the rims of its openings");
@@ -194,16 +243,21 @@ class BodyChecker {
     std::size_t k = 0;
     for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
       made_.faces.emplace_back(body_.source.face_numbers[k], face.Current());
-    name_rims(open);
+    name_cut_faces(thick);
     made_.facts.volume = found / std::pow(asked_.millimetres, 3);
     return true;
   }
 
-  void name_rims(const std::vector<Opening>& open) {
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < result_.made_of.size(); ++k) {
-      if (!body_.stays(k)) continue;
-      for (const TopoDS_Face& rim : open[next++].rim) made_.faces.emplace_back(body_.source.face_numbers[k], rim);
+  /// Has what is cut from faces told as these are.
+  void name_cut_faces(const ThickSolids& thick) {
+    const auto known = made_.faces;
+    for (const auto& [original, face] : thick.cut) {
+      const auto from = std::find_if(known.begin(), known.end(), [&, &whole = original](const auto& each) {
+        for (TopExp_Explorer one(each.second, TopAbs_FACE); one.More(); one.Next())
+          if (one.Current().IsSame(whole)) return true;
+        return false;
+      });
+      if (from != known.end()) made_.faces.emplace_back(from->first, face);
     }
   }
 

@@ -87,6 +87,26 @@ class BodiesHolder {
 
 }  // namespace
 
+std::optional<double> OffsetBody::distance_of_moved() const {
+  std::optional<double> one;
+  for (std::size_t k = 0; k < distances.size(); ++k) {
+    if (stays(k)) continue;
+    if (distances[k].at || (one && *one != distances[k].constant)) return std::nullopt;
+    one = distances[k].constant;
+  }
+  return one;
+}
+
+TopoDS_Shape OffsetBody::faces_that(bool stay) const {
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  std::size_t k = 0;
+  for (TopExp_Explorer face(source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
+    if (stays(k) == stay) builder.Add(all, face.Current());
+  return all;
+}
+
 TopoDS_Shape scaled(const TopoDS_Shape& shape, double factor) {
   if (factor == 1 || shape.IsNull()) return shape;
   gp_Trsf scale;

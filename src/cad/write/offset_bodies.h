@@ -4,6 +4,7 @@
 #include <BRep_Builder.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shape.hxx>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct OffsetBody {
   std::vector<FaceDistance> distances;  ///< Of each face; empty: all have the same.
   bool is_even() const { return distances.empty(); }
   bool stays(std::size_t face) const { return !is_even() && !distances[face].at && distances[face].constant == 0; }
+  /// The distance of all faces that do not stay, if they have one and the same.
+  std::optional<double> distance_of_moved() const;
+  /// The faces that stay, or all others.
+  TopoDS_Shape faces_that(bool stay) const;
 };
 
 /// What is asked of a model, and how many millimetres its unit is.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "write/thick_solids.h"
 
-#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_BuilderAlgo.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <TopExp_Explorer.hxx>
@@ -10,6 +10,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <algorithm>
 
 namespace vdb_offset::cad {
 namespace {
@@ -31,56 +32,78 @@ TopoDS_Solid between(const TopoDS_Shape& larger, const TopoDS_Shape& smaller) {
   return solid;
 }
 
-/// What lies between the larger and the smaller faces of openings: in the surface of each, and looking as that does.
-/// Openings side by side share the edges between their rims.
-void find_rims(std::vector<Opening>& openings, bool is_outward) {
-  TopTools_ListOfShape larger, smaller;
-  for (const Opening& each : openings) {
-    (is_outward ? smaller : larger).Append(each.source);
-    for (TopExp_Explorer face(each.offset, TopAbs_FACE); face.More(); face.Next())
-      (is_outward ? larger : smaller).Append(face.Current());
-  }
-  BRepAlgoAPI_Cut cut;
-  cut.SetArguments(larger);
-  cut.SetTools(smaller);
-  cut.Build();
-  if (!cut.IsDone()) return;
-  const auto add_rim = [&](const TopoDS_Shape& face, Opening& to) {
-    for (TopTools_ListOfShape::Iterator rim(cut.Modified(face)); rim.More(); rim.Next())
-      to.rim.push_back(TopoDS::Face(rim.Value().Oriented(to.source.Orientation())));
-  };
-  for (Opening& each : openings) {
-    if (!is_outward) add_rim(each.source, each);
-    for (TopExp_Explorer face(each.offset, TopAbs_FACE); is_outward && face.More(); face.Next())
-      add_rim(face.Current(), each);
-  }
-}
+/// Two shells of which the open faces lie in each other's surface, cut along each other's edges there.
+class CutShells {
+ public:
+  CutShells(const TopoDS_Shape& larger, const TopoDS_Shape& smaller, const std::vector<Opening>& openings,
+            ThickSolids& made)
+      : larger_(larger), smaller_(smaller), openings_(openings), made_(made) {}
 
-/// A closed solid of the faces of two shells, but for openings, and their rims; null if that is not closed.
-TopoDS_Shape joined(const TopoDS_Shape& larger, const TopoDS_Shape& smaller, const std::vector<Opening>& openings) {
-  TopTools_MapOfShape open;
-  for (const Opening& each : openings) {
-    open.Add(each.source);
-    for (TopExp_Explorer face(each.offset, TopAbs_FACE); face.More(); face.Next()) open.Add(face.Current());
+  /// The closed solid between the two, which goes on in the surfaces of the open faces: there, it is what lies in one
+  /// of the two faces alone. Null if that does not close. \param is_outward whether the offset is the larger one
+  TopoDS_Shape joined(bool is_outward) {
+    TopTools_ListOfShape both;
+    both.Append(larger_);
+    both.Append(smaller_);
+    cut_.SetArguments(both);
+    cut_.SetNonDestructive(true);
+    cut_.Build();
+    if (!cut_.IsDone()) return {};
+    builder_.MakeShell(shell_);
+    TopTools_MapOfShape open;
+    for (const Opening& each : openings_) {
+      const std::vector<TopoDS_Face> of_source = faces_left(each.source), of_offset = faces_left(each.offset);
+      add_rim(is_outward ? of_offset : of_source, is_outward ? of_source : of_offset, each);
+      open.Add(each.source);
+      for (TopExp_Explorer face(each.offset, TopAbs_FACE); face.More(); face.Next()) open.Add(face.Current());
+    }
+    for (const bool is_turned : {false, true})
+      for (TopExp_Explorer face(is_turned ? smaller_ : larger_, TopAbs_FACE); face.More(); face.Next())
+        if (!open.Contains(face.Current()))
+          for (const TopoDS_Face& left : faces_left(face.Current())) add(left, is_turned, face.Current());
+    shell_.Closed(BRep_Tool::IsClosed(shell_));
+    if (!shell_.Closed()) return {};
+    TopoDS_Solid solid;
+    builder_.MakeSolid(solid);
+    builder_.Add(solid, shell_);
+    return solid;
   }
-  TopoDS_Shell shell;
-  BRep_Builder builder;
-  builder.MakeShell(shell);
-  const auto add_faces = [&](const TopoDS_Shape& from, bool is_turned) {
-    for (TopExp_Explorer face(from, TopAbs_FACE); face.More(); face.Next())
-      if (!open.Contains(face.Current())) builder.Add(shell, is_turned ? face.Current().Reversed() : face.Current());
-  };
-  add_faces(larger, false);
-  add_faces(smaller, true);
-  for (const Opening& each : openings)
-    for (const TopoDS_Face& face : each.rim) builder.Add(shell, face);
-  shell.Closed(BRep_Tool::IsClosed(shell));
-  if (!shell.Closed()) return {};
-  TopoDS_Solid solid;
-  builder.MakeSolid(solid);
-  builder.Add(solid, shell);
-  return solid;
-}
+
+ private:
+  /// What faces have become, looking as these do.
+  std::vector<TopoDS_Face> faces_left(const TopoDS_Shape& of) {
+    std::vector<TopoDS_Face> left;
+    for (TopExp_Explorer face(of, TopAbs_FACE); face.More(); face.Next()) {
+      const TopTools_ListOfShape& pieces = cut_.Modified(face.Current());
+      if (pieces.IsEmpty()) left.push_back(TopoDS::Face(face.Current()));
+      for (const TopoDS_Shape& piece : pieces)
+        left.push_back(TopoDS::Face(piece.Oriented(face.Current().Orientation())));
+    }
+    return left;
+  }
+
+  void add(const TopoDS_Face& face, bool is_turned, const TopoDS_Shape& original) {
+    builder_.Add(shell_, is_turned ? face.Reversed() : TopoDS_Shape(face));
+    if (!face.IsSame(original)) made_.cut.emplace_back(original, face);
+  }
+
+  void add_rim(const std::vector<TopoDS_Face>& of_larger, const std::vector<TopoDS_Face>& of_smaller,
+               const Opening& opening) {
+    const auto is_in = [](const TopoDS_Face& face, const std::vector<TopoDS_Face>& faces) {
+      return std::any_of(faces.begin(), faces.end(), [&](const TopoDS_Face& each) { return each.IsSame(face); });
+    };
+    for (const bool is_turned : {false, true})
+      for (const TopoDS_Face& face : is_turned ? of_smaller : of_larger)
+        if (!is_in(face, is_turned ? of_larger : of_smaller)) add(face, is_turned, opening.source);
+  }
+
+  const TopoDS_Shape larger_, smaller_;
+  const std::vector<Opening>& openings_;
+  ThickSolids& made_;
+  BRepAlgoAPI_BuilderAlgo cut_;
+  BRep_Builder builder_;
+  TopoDS_Shell shell_;
+};
 
 /// Which openings are in a shell.
 std::vector<Opening> in_shell(const TopoDS_Shape& shell, const std::vector<Opening>& openings) {
@@ -94,19 +117,19 @@ std::vector<Opening> in_shell(const TopoDS_Shape& shell, const std::vector<Openi
 
 }  // namespace
 
-std::vector<TopoDS_Shape> thick_solids(const TopoDS_Shape& source, const TopoDS_Shape& offset, bool is_outward,
-                                       std::vector<Opening>& openings) {
+ThickSolids thick_solids(const TopoDS_Shape& source, const TopoDS_Shape& offset, bool is_outward,
+                         const std::vector<Opening>& openings) {
   const std::vector<TopoDS_Shape> from = shells_in(source), to = shells_in(offset);
-  if (from.size() != to.size()) return {};
-  if (!openings.empty()) find_rims(openings, is_outward);
-  std::vector<TopoDS_Shape> solids;
-  for (std::size_t i = 0; i < from.size(); ++i) {
+  ThickSolids made;
+  for (std::size_t i = 0; i < from.size() && from.size() == to.size(); ++i) {
     const TopoDS_Shape &larger = is_outward ? to[i] : from[i], &smaller = is_outward ? from[i] : to[i];
     const std::vector<Opening> open = in_shell(from[i], openings);
-    solids.push_back(open.empty() ? between(larger, smaller) : joined(larger, smaller, open));
-    if (solids.back().IsNull()) return {};
+    const TopoDS_Shape solid =
+        open.empty() ? between(larger, smaller) : CutShells(larger, smaller, open, made).joined(is_outward);
+    if (solid.IsNull()) return {};
+    made.solids.push_back(solid);
   }
-  return solids;
+  return made;
 }
 
 }  // namespace vdb_offset::cad
