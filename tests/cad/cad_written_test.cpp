@@ -76,7 +76,7 @@ TEST_CASE("cad written: a block stays what it is, outward and inward", "[cad]") 
   }
 }
 
-TEST_CASE("cad written: above the apex of a cone, its other half is not what a point is near to", "[cad]") {
+TEST_CASE("cad written: above the apex of a cone, its other half is not what a point is near to", "[cad][long]") {
   const double distance = GENERATE(20.0, 8.24621, -20.0), sine = 1 / std::sqrt(10.0);  // of half the angle at the apex
   const Written written = write("sharp_cone.brep", distance, "sharp_cone_out.brep");
   CHECK(written.facts.made == Made::Solid);

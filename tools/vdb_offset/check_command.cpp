@@ -73,7 +73,7 @@ void declare_measuring(CommandLine& line, CheckRequest& request) {
   line.repeated(
       "--only", "PART",
       "The part that was offset: 'group=NAME', 'material=NAME', 'faces=FILE', 'holes' ('holes<8', 'holes>8'), "
-      "'concave', 'convex', 'up', 'down', 'face=N', 'name=NAME', 'color=RRGGBB', or 'not:PART'; may be "
+      "'concave', 'convex', 'up', 'down', 'planar:AXIS', 'face=N', 'name=NAME', 'color=RRGGBB', or 'not:PART'; may be "
       "repeated",
       [&made](const std::string& text) { made.only.push_back(parse_part("--only", text)); });
   line.option("--border", "MODE", "What the edge of that part did: 'slide', 'fixed' or 'free' [slide]", made.border,

@@ -207,7 +207,8 @@ class Judge {
     const bool may_differ = asked_.is_even && is_closed_ && was.solids > 0 && is.solids > 0;
     if (!may_differ && is.solids != was.solids)
       fault(std::to_string(is.solids) + " solids in place of " + std::to_string(was.solids));
-    if (!may_differ && is.shells != was.shells)
+    // Of a mesh, a shell in two parts is two.
+    if (!may_differ && !options_.is_of_mesh && is.shells != was.shells)
       fault(std::to_string(is.shells) + " shells in place of " + std::to_string(was.shells));
     if (is.open > was.open) fault(std::to_string(is.open) + " shells are open");
   }
@@ -292,7 +293,7 @@ class Judge {
   }
 
   void check_turns(const Soup& result) {
-    const std::optional<int> triangle = turned_triangle(result, far_, options_.samples / 10, options_.may_fold);
+    const std::optional<int> triangle = turned_triangle(result, far_, options_.samples / 10, options_.is_of_mesh);
     if (!triangle) return;
     const Soup::Triangle& at = result.triangles()[*triangle];
     fault("a face lies within others, or is turned, as at " + text_of(middle_of(at)) + " on face " +

@@ -14,7 +14,8 @@ namespace vdb_offset::cad {
 struct JudgeOptions {
   int samples = 10000;
   double tolerance = 0.01;  ///< Of |distance|: how near or far points may be.
-  bool may_fold = false;    ///< Triangles of a mesh may lie on each other, back to back.
+  /// It has triangles of a mesh, which may lie on each other, back to back; and parts of a shell are shells.
+  bool is_of_mesh = false;
 };
 
 /// How far the faces of a source were to go.

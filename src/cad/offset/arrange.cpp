@@ -67,18 +67,10 @@ bool remove_dead(Model& model, int face, std::vector<std::string>& gaps) {
   const std::string name = "face " + std::to_string(face + 1);
   const std::vector<int> group = dead_with(model, face);
   if (const std::optional<bool> is_closed = close_neck(model, group)) {
-    model.steps.push_back(name + " is swallowed with " + std::to_string(group.size() - 1) +
-                          " beside it, and what they part");
     if (!*is_closed) gaps.push_back(name + " is swallowed, and its neighbours do not close the gap");
     return *is_closed;
   }
-  if (close_hole(model, group)) {
-    model.steps.push_back(name + " is swallowed with " + std::to_string(group.size() - 1) +
-                          " beside it, and a hole or boss");
-    return true;
-  }
-  model.steps.push_back(name + " is swallowed");
-  if (remove_face(model, face)) return true;
+  if (close_hole(model, group) || remove_face(model, face)) return true;
   gaps.push_back(name + " is swallowed, and its neighbours do not close the gap");
   return false;
 }
@@ -91,7 +83,6 @@ bool remove_lenses(Model& model, std::vector<std::string>& gaps) {
     const int h = face.loops.front(), other = model.halves[h].next;
     if (other == h || model.halves[other].next != h || face.sides < 3) continue;
     if (model.halves[h].twin < 0 || model.halves[other].twin < 0 || model.halves[h].twin == other) continue;
-    model.steps.push_back("face " + std::to_string(f + 1) + " has no width left");
     if (remove_face(model, f)) continue;
     gaps.push_back("face " + std::to_string(f + 1) + " is swallowed, and its neighbours do not close the gap");
     return false;
@@ -152,7 +143,6 @@ void arrange(Model& model, const Tolerances& tolerances, std::vector<std::string
       gaps.insert(gaps.end(), missed.begin(), missed.end());
       return;
     }
-    model.steps.push_back("edge " + std::to_string(edge + 1) + " shrinks to nothing");
     if (!contract_edges(model, {edge})) {
       gaps.push_back("edge " + std::to_string(edge + 1) + " shrinks to nothing");
       return;

@@ -77,8 +77,7 @@ struct Model {
   std::vector<ModelEdge> edges;
   std::vector<ModelVertex> vertices;
   std::vector<ModelFace> faces;
-  std::vector<std::string> steps;  ///< What was changed, in words.
-  std::string failure;             ///< Why the shell cannot be taken; empty if it can.
+  std::string failure;  ///< Why the shell cannot be taken; empty if it can.
 };
 
 /// A source edge's curve, drawn out straight beyond its range unless it is a line or a conic.

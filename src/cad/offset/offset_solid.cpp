@@ -68,7 +68,7 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
       report_progress(static_cast<double>(first_face) / all_faces);
       if (!model.failure.empty()) {
         result.gaps.push_back(model.failure);
-        result.faces.resize(first_face + count_faces(s.Current()), CadFace::Missing);
+        result.faces.resize(first_face + count_faces(s.Current()), CadFace::Swallowed);
         result.made_of.resize(result.faces.size());
         continue;
       }
@@ -82,7 +82,6 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
         result.gaps.emplace_back("distances of faces that are joined smoothly differ where they meet (--blend)");
       if (request.keeps_turned) arrange_turned(model, tolerances, result.gaps);
       else arrange(model, tolerances, result.gaps);
-      result.steps.insert(result.steps.end(), model.steps.begin(), model.steps.end());
       if (result.gaps.size() > gaps_before) continue;
       if (std::all_of(model.faces.begin(), model.faces.end(), [](const ModelFace& f) { return f.is_gone; })) {
         result.gaps.push_back("the shell is swallowed whole");

@@ -18,7 +18,7 @@ struct OffsetCadRequest {
   bool keeps_turned = false;  ///< Leaves what the distance turns round, to be trimmed.
 };
 
-enum class CadFace { Kept, Fitted, Swallowed, Missing, Faceted };  ///< The last: at least in part.
+enum class CadFace { Kept, Fitted, Swallowed, Faceted };  ///< The last: at least in part.
 
 CadFace made_by(FaceMade made);
 
@@ -29,7 +29,6 @@ struct OffsetCadResult {
   double fit_error = 0;                  ///< The worst of the fitted surfaces.
   double exact_area = 0, flat_area = 0;  ///< Of a hybrid, by its mesh: of exact faces, and of triangles.
   std::size_t triangles = 0;             ///< Of a hybrid.
-  std::vector<std::string> steps;        ///< What was changed of the topology, in words.
   std::vector<std::string> gaps;         ///< What is missing or not good, in words.
 };
 

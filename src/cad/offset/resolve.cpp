@@ -341,11 +341,7 @@ bool resolve_vertex(Model& model, int vertex, const Tolerances& tolerances) {
   if (model.vertices[vertex].residual <= tolerances.gap && !is_far()) return true;
   const bool is_close = model.vertices[vertex].residual <= kCloseEnough * tolerances.distance;
   const bool may_split = n >= 4 && n <= kMostCorners && !model.vertices[vertex].is_open;
-  const auto split = [&](double most) {
-    if (!may_split || !Splitter(model, vertex, tolerances).split(most)) return false;
-    model.steps.push_back("vertex " + std::to_string(vertex + 1) + " of " + std::to_string(n) + " faces is split");
-    return true;
-  };
+  const auto split = [&](double most) { return may_split && Splitter(model, vertex, tolerances).split(most); };
   if (split(kCrossing * tolerances.distance)) return true;
   // Edges that end at a new edge stay where they are; those within one surface may also leave their trimming curves, as
   // where a step goes up between two faces of one plane.

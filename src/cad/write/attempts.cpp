@@ -67,8 +67,9 @@ MadeBody join_by_intersection(const BodyTask& task) {
   return check(task, opencascade_offset(task.request(), Join::Intersection));
 }
 
-/// With triangles in place of what is exact, too, where the check finds a fault, as long as there is some of it.
-MadeBody make_with_triangles(const BodyTask& task, ExactParts parts, Exactness exactness) {
+/// With triangles in place of what is exact, too, where the check finds a fault. One that is left where nothing is
+/// exact is the mesh's own: the result is doubtful then.
+MadeBody make_with_triangles(const BodyTask& task, ExactParts parts) {
   constexpr int kMostChecks = 4;
   const Asked& asked = task.asked;
   const Body& body = task.body.body;
@@ -76,18 +77,20 @@ MadeBody make_with_triangles(const BodyTask& task, ExactParts parts, Exactness e
                       shell_meshes(body, shape_of(body), task.body.mesh, asked.write.positions, asked.millimetres),
                       parts);
   for (int checks = 1;; ++checks) {
-    MadeBody made = check(task, hybrid.make(), exactness);
-    if (made.is_good() || checks == kMostChecks || !hybrid.take_off_near(made.bad_places)) return made;
+    MadeBody made = check(task, hybrid.make(), Exactness::Hybrid);
+    if (made.facts.made != io::CadMade::Doubtful || parts == ExactParts::None) return made;
+    const bool is_of_exact = made.bad_places.empty() || hybrid.take_off_near(made.bad_places);
+    if (!is_of_exact) return made;
+    if (made.bad_places.empty() || checks == kMostChecks) {
+      made.facts.made = io::CadMade::Nothing;
+      return made;
+    }
   }
 }
 
-MadeBody make_hybrid(const BodyTask& task) { return make_with_triangles(task, ExactParts::Near, Exactness::Hybrid); }
-
-MadeBody make_stricter_hybrid(const BodyTask& task) {
-  return make_with_triangles(task, ExactParts::There, Exactness::Hybrid);
-}
-
-MadeBody make_triangles(const BodyTask& task) { return make_with_triangles(task, ExactParts::None, Exactness::Any); }
+MadeBody make_hybrid(const BodyTask& task) { return make_with_triangles(task, ExactParts::Near); }
+MadeBody make_stricter_hybrid(const BodyTask& task) { return make_with_triangles(task, ExactParts::There); }
+MadeBody make_triangles(const BodyTask& task) { return make_with_triangles(task, ExactParts::None); }
 
 bool any(const BodyTask&) { return true; }
 bool is_even_solid(const BodyTask& task) { return task.is_even_solid(); }

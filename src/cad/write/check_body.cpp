@@ -31,7 +31,7 @@ class BodyChecker {
         result_(result),
         asked_(asked),
         is_hybrid_(exactness != Exactness::Exact && result.triangles > 0),
-        may_doubt_(exactness == Exactness::Any) {}
+        may_doubt_(exactness == Exactness::Hybrid) {}
 
   MadeBody run() {
     io::CadWritten& facts = made_.facts;
@@ -59,11 +59,10 @@ class BodyChecker {
   void count_faces() {
     io::CadWritten& facts = made_.facts;
     for (const CadFace face : result_.faces)
-      ++(face == CadFace::Kept        ? facts.kept
-         : face == CadFace::Fitted    ? facts.fitted
-         : face == CadFace::Faceted   ? facts.faceted
-         : face == CadFace::Swallowed ? facts.swallowed
-                                      : facts.missing);
+      ++(face == CadFace::Kept      ? facts.kept
+         : face == CadFace::Fitted  ? facts.fitted
+         : face == CadFace::Faceted ? facts.faceted
+                                    : facts.swallowed);
     facts.fit_error = result_.fit_error / asked_.millimetres;
     facts.triangles = result_.triangles;
     facts.exact_area = result_.exact_area;
@@ -115,7 +114,7 @@ class BodyChecker {
     if (!body_.is_even() && !is_hybrid_ && !is_at_distances(distance)) return false;
     if (is_hybrid_) distance = sides();
     JudgeOptions options;
-    options.may_fold = is_hybrid_;
+    options.is_of_mesh = is_hybrid_;
     const Verdict verdict = judge_offset(body_.source.shape, result_.shape, again, distance, options);
     if (distance.is_even) report_measured(verdict.samples, verdict.least, verdict.most);
     if (verdict.is_good && body_.body.is_solid) facts.volume = volume_of(again) / std::pow(asked_.millimetres, 3);

@@ -6,8 +6,8 @@
 
 namespace vdb_offset::cad {
 
-/// Whether triangles take the place of faces that fail; and whether what is valid is taken even if it is doubtful.
-enum class Exactness { Exact, Hybrid, Any };
+/// Whether triangles may take the place of faces that fail: what is valid is taken then even if it is doubtful.
+enum class Exactness { Exact, Hybrid };
 
 /// Writes an offset of a body, reads it again and judges it; as the thick solid between the body and the offset if that
 /// is asked for. Nothing is made of one that is not good, and `gaps` says why.

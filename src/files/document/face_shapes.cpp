@@ -48,7 +48,7 @@ constexpr std::size_t kMostBeside = 16;
 constexpr double kFacing = 45 * kOneDegree - 1e-6;
 
 // How far faces of one end may lie apart, as a share of the diagonal. Not measured: far above rounding.
-constexpr double kEnd = 1e-4;
+constexpr double kEndSlack = 1e-4;
 
 /// For each vertex the first one at its position.
 std::vector<std::uint32_t> first_at_positions(PolygonView mesh) {
@@ -171,9 +171,9 @@ std::vector<std::uint8_t> FaceShapes::facing(int side) const {
 }
 
 std::vector<std::uint8_t> FaceShapes::flat_end(std::size_t axis, int side) const {
-  openvdb::BBoxd box;
+  openvdb::math::BBox<Vec3d> box;
   for (const auto v : mesh_.corners) box.expand(mesh_.positions[v]);
-  const double slack = kEnd * box.extents().length();
+  const double slack = kEndSlack * box.extents().length();
   // How far each face reaches, if it looks that way.
   std::vector<double> reach(area_.size(), -INFINITY);
   double farthest = -INFINITY;
@@ -183,8 +183,8 @@ std::vector<std::uint8_t> FaceShapes::flat_end(std::size_t axis, int side) const
     for (const auto v : mesh_.face(f)) reach[f] = std::min(reach[f], side * mesh_.positions[v][axis]);
     farthest = std::max(farthest, reach[f]);
   }
-  std::vector<std::uint8_t> marks;
-  for (const double each : reach) marks.push_back(each > -INFINITY && each >= farthest - slack);
+  std::vector<std::uint8_t> marks(reach.size());
+  for (std::size_t f = 0; f < reach.size(); ++f) marks[f] = reach[f] > -INFINITY && reach[f] >= farthest - slack;
   return marks;
 }
 

@@ -225,7 +225,7 @@ std::optional<Selector> parse_end(const std::string& text) {
 }
 
 std::optional<Selector> parse_shape(const std::string& text) {
-  if (const std::optional<Selector> end = parse_end(text)) return end;
+  if (std::optional<Selector> end = parse_end(text)) return end;
   for (const auto& [word, by] : kShapeWords)
     if (text == word) return Selector{by, {}};
   const std::string holes = in_words(Selector::By::Holes);

@@ -117,7 +117,7 @@ void declare_parts(CommandLine& line, Draft& draft) {
       "--only", "PART",
       "Offset only this part; the rest stays, as an obstacle: 'group=NAME', 'material=NAME', "
       "'faces=FILE' (indices from 0, or a 0 or 1 for each face), 'holes' (round ones; 'holes<8' or 'holes>8' "
-      "by diameter), 'concave', 'convex', 'up', 'down', 'planar:+z' (the flat end that way), or of a CAD model "
+      "by diameter), 'concave', 'convex', 'up', 'down', 'planar:AXIS' (the flat end, as planar:+z), or of a CAD model "
       "'face=N' (from 1), 'name=NAME' or 'color=RRGGBB'; 'not:PART' is all but that; may be repeated",
       [&request](const std::string& text) {
         request.only_texts.push_back(text);
@@ -148,14 +148,16 @@ void declare_products(CommandLine& line, Request& request) {
             "Write the source and its offset as one closed solid, joined by a rim where the surface is open; with "
             "--mode iso: a hollow solid, the source's own faces and one clean cavity, or skin",
             request.shell);
-  line.repeated(
-      "--open", "PART",
-      "With --shell: no wall over this part, named as for --only, as in 'planar:+z' or 'face=3'; the rim lies "
-      "in its surface; may be repeated",
-      [&request](const std::string& text) {
-        request.only_texts.push_back("not:" + text);
-        request.only.push_back(parse_opening(text));
-      });
+  line.repeated("--open", "PART",
+                "With --shell: no wall over this part, the rim lies in its surface: 'group=NAME', 'material=NAME', "
+                "'faces=FILE', 'holes', 'concave', 'convex', 'up', 'down', 'planar:AXIS' (as planar:+z), or of a CAD "
+                "model 'face=N', 'name=NAME' or 'color=RRGGBB'; 'not:PART' is all but that; may be repeated",
+                [&request](const std::string& text) {
+                  const bool is_negated = text.starts_with("not:");
+                  request.only_texts.push_back(is_negated ? text.substr(4) : "not:" + text);
+                  request.only.push_back(parse_part("--open", text));
+                  request.only.back().is_negated = !is_negated;
+                });
   line.option("--inner", "E",
               "With --shell: put the inner skin this far inward, not on the source; with --mode iso both skins are new",
               [&request](const std::string& text) { request.inner = parse_inner(text, request); });

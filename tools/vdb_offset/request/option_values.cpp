@@ -158,13 +158,6 @@ io::Selector parse_part(const char* option, const std::string& text) {
   }
 }
 
-io::Selector parse_opening(const std::string& text) {
-  io::Selector part = parse_part("--open", text);
-  if (part.is_negated) throw UsageError(fmt::format("--open: expected what is open, got '{}'", text));
-  part.is_negated = true;
-  return part;
-}
-
 Border parse_border(const std::string& text) {
   constexpr Border kBorders[] = {Border::Slide, Border::Fixed, Border::Free};
   return kBorders[parse_word("--border", text, {"slide", "fixed", "free"})];

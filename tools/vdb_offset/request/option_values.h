@@ -77,9 +77,6 @@ GivenDistance parse_blend(const std::string& text);
 /// group=NAME, material=NAME, faces=FILE, and of CAD models face=N, name=NAME or color=RRGGBB.
 io::Selector parse_part(const char* option, const std::string& text);
 
-/// --open: all but a part. \throw UsageError, also for a part behind not:
-io::Selector parse_opening(const std::string& text);
-
 /// 'slide', 'fixed' or 'free'.
 Border parse_border(const std::string& text);
 

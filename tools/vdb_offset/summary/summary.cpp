@@ -152,7 +152,7 @@ std::string shares_in_words(double least, double most) {
 /// What was made of a CAD model.
 std::string cad_in_words(const CadFileFacts& cad, const Lengths& lengths) {
   constexpr const char* kMade[] = {"a valid solid", "valid shells", "valid, in part of triangles",
-                                   "of triangles, and doubtful"};
+                                   "in part of triangles, and doubtful"};
   std::string text =
       fmt::format("{}: {} faces kept, {} fitted", kMade[static_cast<int>(cad.made)], cad.kept, cad.fitted);
   if (cad.fitted > 0) text += " to " + lengths(cad.fit_error, 2);
