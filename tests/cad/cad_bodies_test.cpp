@@ -24,10 +24,12 @@ struct Moved {
 };
 
 /// Offsets a model as the command does, with the mesh for where exact faces fail, and reads what was written.
-Moved moved(const std::string& name, const io::CadDistances& distances, const io::CadWriting& how = {}) {
+Moved moved(const std::string& name, const io::CadDistances& distances, const io::CadWriting& how = {},
+            bool fuses_bodies = false) {
   REQUIRE(test::cad_files().is_made());
   io::ReadOptions reading;
   reading.cad.deflection = 0.01;
+  reading.cad.fuses_bodies = fuses_bodies;
   const io::MeshFile source = io::read_mesh(path_in(name), reading);
   OffsetOptions options;
   options.distance = Distances(distances.each.front().number);
@@ -118,6 +120,22 @@ TEST_CASE("cad bodies: a solid of which nothing is left is reported, and the oth
   CHECK(left.facts.vanished == 1);
   CHECK(left.facts.volume == Approx(29.4 * 19.4 * 14.4).epsilon(1e-9));
   CHECK_THROWS_WITH(moved("block_and_plate.step", -8), Catch::Contains("nothing is left of it"));
+}
+
+TEST_CASE("cad bodies: solids that touch or get into each other are offset as one where that is asked for", "[cad]") {
+  for (const double d : {0.1, -0.1}) {
+    const Moved boxes = moved("touching.step", d, {}, true);  // unit cubes, face to face
+    CHECK(boxes.facts.made == Made::Solid);
+    CHECK(boxes.facts.kept == 10);
+    CHECK(boxes.facts.gaps.empty());
+    CHECK(boxes.facts.volume == Approx((2 + 2 * d) * (1 + 2 * d) * (1 + 2 * d)).epsilon(1e-9));
+    CHECK(solids_of(boxes.again).count == 1);
+  }
+  // Of two that share a part, it counts once; a third one that is apart stays what it is.
+  const Moved crossed = moved("crossed.step", 0.5, {}, true);
+  CHECK(crossed.facts.made == Made::Solid);
+  CHECK(crossed.facts.volume == Approx(21 * 5 * 5 * 2 - 5 * 5 * 5 + 27).epsilon(1e-9));
+  CHECK(solids_of(crossed.again).count == 2);
 }
 
 TEST_CASE("cad bodies: faces in IGES that lie as they come are a solid where they close", "[cad]") {

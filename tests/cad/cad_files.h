@@ -47,8 +47,8 @@ inline const CadFiles& cad_files() {
 inline constexpr double kCadSeconds = 60;
 
 inline io::CadWorker open_cad(const std::string& name, double deflection = 0.01) {
-  const io::CadFineness fineness{deflection, 0, 15 * std::numbers::pi / 180};
-  return {name, cad_files().bytes(name), name.substr(name.rfind('.')), fineness, kCadSeconds, 0};
+  const io::CadMeshing meshing{{deflection, 0, 15 * std::numbers::pi / 180}};
+  return {name, cad_files().bytes(name), name.substr(name.rfind('.')), meshing, kCadSeconds, 0};
 }
 
 }  // namespace vdb_offset::test

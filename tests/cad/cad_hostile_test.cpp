@@ -19,7 +19,7 @@ using test::open_cad;
 
 namespace {
 
-io::CadFineness coarse() { return {0.5, 0, 0.5}; }
+io::CadMeshing coarse() { return {0.5, 0, 0.5}; }
 
 /// What reading a file of such bytes ends with; empty: a mesh.
 std::string reads(const std::string& bytes, const std::string& ending, double seconds = test::kCadSeconds) {

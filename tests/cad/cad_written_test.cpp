@@ -160,7 +160,8 @@ TEST_CASE("cad written: bodies that get into each other are written each by itse
   const Written written = write("touching.step", 1, "into.step");
   CHECK(written.facts.made == Made::Solid);
   REQUIRE_FALSE(written.facts.gaps.empty());
-  CHECK(written.facts.gaps.back() == "bodies get into each other; each is written by itself");
+  CHECK(written.facts.gaps.back() ==
+        "bodies get into each other, and each is written by itself: --bodies fuse makes them one");
 }
 
 TEST_CASE("cad written: bosses that grow into each other become one", "[cad]") {

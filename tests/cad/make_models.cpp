@@ -109,16 +109,6 @@ TopoDS_Shape block() {
   return BRepAlgoAPI_Cut(round.Shape(), BRepPrimAPI_MakeCylinder(axis, 5, 22).Shape()).Shape();
 }
 
-/// Two boxes that have a face in one place, each with faces of its own.
-TopoDS_Shape touching() {
-  BRep_Builder builder;
-  TopoDS_Compound both;
-  builder.MakeCompound(both);
-  builder.Add(both, BRepPrimAPI_MakeBox(1, 1, 1).Shape());
-  builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(1, 0, 0), gp_Pnt(2, 1, 1)).Shape());
-  return both;
-}
-
 TopoDS_Shape upright(double x, double y, double z, double radius, double height) {
   return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(x, y, z), gp_Dir(0, 0, 1)), radius, height).Shape();
 }
@@ -411,6 +401,7 @@ int main(int count, char** words) {
   write_step(BRepPrimAPI_MakeBox(2, 3, 4).Shape(), "inch.stp", "INCH");
   write_step(BRepPrimAPI_MakeBox(2, 3, 4).Shape(), "metre.step", "M");
   write_step(touching(), "touching.step", "MM");
+  write_step(crossed(), "crossed.step", "MM");
   write_step(bosses(), "bosses.step", "MM");
   write_step(hole_at_side(), "hole_at_side.step", "MM");
   write_step(halves_at_side(), "halves_at_side.step", "MM");

@@ -68,3 +68,22 @@ TopoDS_Shape turned_cube() {
     BRep_Builder().Add(faces, number++ % 2 == 0 ? face.Current() : face.Current().Reversed());
   return faces;
 }
+
+TopoDS_Shape touching() {
+  BRep_Builder builder;
+  TopoDS_Compound both;
+  builder.MakeCompound(both);
+  builder.Add(both, BRepPrimAPI_MakeBox(1, 1, 1).Shape());
+  builder.Add(both, BRepPrimAPI_MakeBox(gp_Pnt(1, 0, 0), gp_Pnt(2, 1, 1)).Shape());
+  return both;
+}
+
+TopoDS_Shape crossed() {
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  builder.Add(all, BRepPrimAPI_MakeBox(gp_Pnt(-10, -2, -2), gp_Pnt(10, 2, 2)).Shape());
+  builder.Add(all, BRepPrimAPI_MakeBox(gp_Pnt(-2, -10, -2), gp_Pnt(2, 10, 2)).Shape());
+  builder.Add(all, BRepPrimAPI_MakeBox(gp_Pnt(20, 20, 20), gp_Pnt(22, 22, 22)).Shape());
+  return all;
+}

@@ -15,3 +15,7 @@ TopoDS_Shape pyramid();
 TopoDS_Shape block_and_plate();
 /// A cube of 10, three of whose faces lie the other way round.
 TopoDS_Shape turned_cube();
+/// Two boxes that have a face in one place, each with faces of its own.
+TopoDS_Shape touching();
+/// Two bars that cross each other at right angles, and a cube beside them.
+TopoDS_Shape crossed();

@@ -96,6 +96,7 @@ std::vector<std::pair<std::string, std::string>> options_in_force(const Job& job
           {"max-memory", fmt::format("{}", options.max_memory)},
           {"deflection",
            job.source.file && job.source.file->exact ? fmt::format("{}", job.source.file->exact->deflection()) : ""},
+          {"bodies", request.fuses_bodies ? "fuse" : "each"},
           {"flatten", job.source.curves && job.source.curves->flattened_shapes > 0
                           ? fmt::format("{}", job.source.curves->flattened_to)
                           : ""},

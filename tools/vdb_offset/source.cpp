@@ -66,6 +66,7 @@ io::CadReading cad_reading(const Request& request) {
   io::CadReading how;
   how.angle_degrees = request.angle;
   how.seconds = request.cad_seconds;
+  how.fuses_bodies = request.fuses_bodies;
   const auto take = [&how](const GivenDistance& length, double factor) {
     const double value = std::abs(length.value) * factor;
     how.deflection = length.percent ? 0 : value;

@@ -79,6 +79,7 @@ struct CadReading {
   double deflection = 0, deflection_share = 2e-4;
   double least_share = 0, most_share = 1;  ///< The deflection is between these shares of the diagonal.
   double angle_degrees = 15;               ///< The most angle between a face's normals at neighbouring vertices.
+  bool fuses_bodies = false;               ///< Solids that touch or get into each other are read as one.
   double seconds = 300;       ///< How long OpenCASCADE may take for a file, all questions about it included.
   ProgressCallback progress;  ///< See run.h; all of it is Stage::Read. May cancel.
 };

@@ -19,6 +19,11 @@ struct CadFineness {
   double least_of_diagonal = 0, most_of_diagonal = 1;  ///< Bounds of the deflection, as shares of the diagonal.
 };
 
+/// How a CAD model becomes a mesh.
+struct CadMeshing : CadFineness {
+  bool fuses_bodies = false;  ///< Solids that touch or get into each other are one.
+};
+
 /// What a face of a CAD model is, as far as the file states it.
 struct CadFaceFacts {
   std::string name, layer;                      ///< Empty: none.

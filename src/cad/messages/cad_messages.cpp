@@ -99,7 +99,8 @@ void require_whole(const CadMesh& mesh) {
 
 std::string pack(const ReadCad& read) {
   Packer packer;
-  packer.text(read.path).text(read.format).value(read.fineness).value(read.most_memory);
+  packer.text(read.path).text(read.format).value<CadFineness>(read.meshing);
+  packer.value(std::uint64_t{read.meshing.fuses_bodies}).value(read.most_memory);
   return packer.take();
 }
 
@@ -108,7 +109,8 @@ ReadCad unpack_read(std::string_view bytes) {
   ReadCad read;
   read.path = unpacker.text();
   read.format = unpacker.text();
-  read.fineness = unpacker.value<CadFineness>();
+  static_cast<CadFineness&>(read.meshing) = unpacker.value<CadFineness>();
+  read.meshing.fuses_bodies = unpacker.value<std::uint64_t>() != 0;
   read.most_memory = unpacker.value<std::uint64_t>();
   unpacker.end();
   return read;

@@ -40,7 +40,7 @@ enum class CadReply : std::uint32_t {
 struct ReadCad {
   std::string path;    ///< Where the worker finds the file's bytes.
   std::string format;  ///< step, iges or brep
-  CadFineness fineness;
+  CadMeshing meshing;
   std::uint64_t most_memory = 0;  ///< How many bytes more than it has at its start the worker may ask for; 0: any.
 };
 

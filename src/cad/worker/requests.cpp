@@ -7,6 +7,7 @@
 
 #include "ground/process/memory_limit.h"
 #include "ground/process/progress.h"
+#include "read/fuse_bodies.h"
 #include "tessellate/tessellate.h"
 #include "write/write_offset.h"
 
@@ -48,8 +49,9 @@ std::string Requests::mesh(const io::ReadCad& read) {
   constexpr double kRead = 0.4, kTessellated = 0.95;
   limit_memory(read.most_memory);
   model_ = read_within_memory(read);
+  if (read.meshing.fuses_bodies) fuse_bodies(*model_);
   report_progress(kRead);
-  Tessellation tessellation = tessellate_within_memory(*model_, read.fineness);
+  Tessellation tessellation = tessellate_within_memory(*model_, read.meshing);
   const io::CadMesh& mesh = tessellation.mesh;
   meshes_ = std::move(tessellation.bodies);
   report_progress(kTessellated);

@@ -217,7 +217,8 @@ class OffsetWriter {
       return;
     }
     if (again.bodies.size() > 1 && get_into_each_other(again))
-      written_.gaps.emplace_back("bodies get into each other; each is written by itself");
+      written_.gaps.emplace_back(
+          "bodies get into each other, and each is written by itself: --bodies fuse makes them one");
     if (!asked_.write.obstacle_triangles.empty() && !is_clear_of_obstacles(again)) return;
     written_.bytes = file.bytes();
     written_.made = kind();

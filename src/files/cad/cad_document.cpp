@@ -134,15 +134,16 @@ class CadDocument : public Document {
   std::shared_ptr<const CadMesh> mesh_;
 };
 
-CadFineness fineness_of(const CadReading& how) {
-  return {how.deflection, how.deflection > 0 ? 0 : how.deflection_share, how.angle_degrees * std::numbers::pi / 180,
-          how.least_share, how.most_share};
+CadMeshing meshing_of(const CadReading& how) {
+  return {{how.deflection, how.deflection > 0 ? 0 : how.deflection_share, how.angle_degrees * std::numbers::pi / 180,
+           how.least_share, how.most_share},
+          how.fuses_bodies};
 }
 
 }  // namespace
 
 void parse_cad(MeshFile& file, const CadReading& how) {
-  CadWorker worker(file.path, file.text(), name(file.format), fineness_of(how), how.seconds, memory_limit(),
+  CadWorker worker(file.path, file.text(), name(file.format), meshing_of(how), how.seconds, memory_limit(),
                    how.progress);
   const auto mesh = std::make_shared<const CadMesh>(worker.take_mesh());
   file.polygons.positions = mesh->positions;

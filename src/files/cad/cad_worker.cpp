@@ -187,7 +187,7 @@ struct CadWorker::State {
   }
 };
 
-CadWorker::CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadFineness& fineness,
+CadWorker::CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadMeshing& meshing,
                      double seconds, std::uint64_t most_memory, const ProgressCallback& progress)
     : state_(std::make_unique<State>(std::move(path), seconds, most_memory)) {
   const std::string name = format_of(state_->path, format);
@@ -195,7 +195,7 @@ CadWorker::CadWorker(std::string path, std::string_view bytes, std::string_view 
   const auto begun = std::chrono::steady_clock::now();
   const Deadline until = state_->deadline();
   state_->start(file_of(state_->path, bytes), until);
-  const ReadCad read{fmt::format("/proc/self/fd/{}", kWorkerModel), name, fineness, most_memory};
+  const ReadCad read{fmt::format("/proc/self/fd/{}", kWorkerModel), name, meshing, most_memory};
   const std::string reply = state_->ask(CadRequest::Mesh, pack(read), until, progress);
   state_->spent += std::chrono::steady_clock::now() - begun;
   try {

@@ -26,7 +26,7 @@ class CadWorker {
   /// Reads and tessellates the file's bytes, which are kept nowhere here. `format` is a name's ending, with or without
   /// a point: step, stp, iges, igs, brep. `seconds` is how long all requests together may take, this one included;
   /// `most_memory` how many bytes of addresses the worker may ask for, 0: any; `progress` is called with Stage::Read.
-  CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadFineness& fineness,
+  CadWorker(std::string path, std::string_view bytes, std::string_view format, const CadMeshing& meshing,
             double seconds, std::uint64_t most_memory, const ProgressCallback& progress = {});
   ~CadWorker();
   CadWorker(CadWorker&&) noexcept;

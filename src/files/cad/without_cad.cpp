@@ -9,7 +9,7 @@ namespace vdb_offset::io {
 
 struct CadWorker::State {};
 
-CadWorker::CadWorker(std::string path, std::string_view, std::string_view, const CadFineness&, double, std::uint64_t,
+CadWorker::CadWorker(std::string path, std::string_view, std::string_view, const CadMeshing&, double, std::uint64_t,
                      const ProgressCallback&) {
   throw ReadError(std::move(path) +
                   ": expected a build with OpenCASCADE, which reads such files, got one without (VDB_OFFSET_CAD)");

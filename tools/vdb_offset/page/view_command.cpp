@@ -45,7 +45,7 @@ struct ViewRequest {
 };
 
 /// Options that say how a file is read; all others of `check` are about RESULT.
-constexpr const char* kReading[] = {"--unit",        "--grid",    "--isovalue", "--deflection", "--angle",
+constexpr const char* kReading[] = {"--unit",        "--grid",    "--isovalue", "--deflection", "--angle",  "--bodies",
                                     "--cad-seconds", "--flatten", "--close",    "--html",       "--no-open"};
 
 /// Reads the command line. None if it asked only for help, which is then printed.

@@ -214,6 +214,11 @@ void declare_cad(CommandLine& line, Request& request) {
   line.option("--angle", "A",
               "CAD models: most degrees between a face's normals at neighbouring vertices, up to 90 [15]",
               request.angle, number_between("--angle", "a number above 0, up to 90", 0, 90));
+  line.option("--bodies", "HOW",
+              "CAD models: offset solids that touch 'each' by itself, or 'fuse' them to one before [each]",
+              [&request](const std::string& text) {
+                request.fuses_bodies = parse_word("--bodies", text, {"each", "fuse"}) == 1;
+              });
   line.option("--cad-seconds", "S",
               "CAD models: how long OpenCASCADE may take for one model in all [300; in a batch 60]",
               request.cad_seconds, number_between("--cad-seconds", "a number above 0", 0, kAny));

@@ -251,10 +251,12 @@ void require_miters(const Request& request) {
 void require_options_for(const Request& request, bool curves, const char* meshes) {
   if (const char* const of_curves = first_given(request, {"--close", "--flatten"}); of_curves && !curves)
     throw UsageError(fmt::format("{}: expected curves, as this is not for meshes", of_curves));
-  const char* of_meshes = first_given(
-      request, {"--only", "--border", "--distance-of", "--symmetry", "--periodic", "--obstacle", "--shell", "--open",
-                "--mode iso", "--tolerance", "--corners arc", "--orient fix-direction-only", "--orient fix-cavities",
-                "--deflection", "--fit", "--taper", "--fill-with", "--fill-quads", "--caps"});
+  if (const char* const of_cad = first_given(request, {"--deflection", "--bodies"}); of_cad && curves)
+    throw UsageError(fmt::format("{}: expected a CAD model, as this is not for curves", of_cad));
+  const char* of_meshes =
+      first_given(request, {"--only", "--border", "--distance-of", "--symmetry", "--periodic", "--obstacle", "--shell",
+                            "--open", "--mode iso", "--tolerance", "--corners arc", "--orient fix-direction-only",
+                            "--orient fix-cavities", "--fit", "--taper", "--fill-with", "--fill-quads", "--caps"});
   if (request.weld_text != "auto" && request.weld_text != "exact") of_meshes = "--weld";
   if (of_meshes && curves)
     throw UsageError(fmt::format("{}: expected {}, as this is not for curves", of_meshes, meshes));

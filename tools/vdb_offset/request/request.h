@@ -170,6 +170,7 @@ struct Request {
   double fit_tolerance = 0;                 ///< Of written CAD models, world units; 0: 1e-4 distances.
   bool exact = false;                       ///< Write a CAD model of exact faces, or none.
   bool cuts = false;                        ///< --collision cut: of an output that is a CAD model.
+  bool fuses_bodies = false;                ///< Of CAD models: solids that touch are read as one.
   double angle = 15, cad_seconds = 300;     ///< Of CAD models: degrees, and how long reading may take.
   std::optional<GivenDistance> flatten;     ///< How far straight segments may be from curved ones; none: the default.
 
