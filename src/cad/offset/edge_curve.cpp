@@ -27,7 +27,10 @@ namespace vdb_offset::cad {
 namespace {
 
 constexpr int kFirstSpans = 8;
-constexpr int kMostSpans = 256;
+constexpr std::size_t kMostSpans = 512;
+
+/// How often spans are halved: where faces nearly touch, curves turn within a small part of their length.
+constexpr int kMostHalvings = 20;
 
 // Points of an edge in turn, with their parameter on the guide.
 struct Trace {
@@ -48,11 +51,13 @@ class Tracer {
     one_ = edge_.half[0] >= 0 ? 0 : 1;
   }
 
-  Trace trace(int spans) const {
+  /// At shares of the way, rising from 0 to 1.
+  Trace trace(const std::vector<double>& shares) const {
     Trace t;
+    const int spans = static_cast<int>(shares.size()) - 1;
     const bool guided = edge_.kind == EdgeKind::Smooth || !edge_.curve.IsNull();
     const double s0 = guided ? edge_.range[0] : 0, s1 = guided ? edge_.range[1] : 1;
-    for (int i = 0; i <= spans; i++) t.s.push_back(s0 + (s1 - s0) * i / spans);
+    for (const double share : shares) t.s.push_back(s0 + (s1 - s0) * share);
     for (int i = 0; i <= spans; i++)
       t.contacts.push_back(edge_.keeps_curves()             ? smooth(t.s[i])
                            : edge_.kind == EdgeKind::Smooth ? strayed(t.s[i])
@@ -146,8 +151,9 @@ class Tracer {
     gp_Pnt2d sa = last.a, sb = last.b;
     if (i > 1) {
       const Contact& before = t.contacts[i - 2];
-      sa = sa.Translated(gp_Vec2d(before.a, last.a));
-      sb = sb.Translated(gp_Vec2d(before.b, last.b));
+      const double ratio = (t.s[i] - t.s[i - 1]) / (t.s[i - 1] - t.s[i - 2]);
+      sa = sa.Translated(gp_Vec2d(before.a, last.a) * ratio);
+      sb = sb.Translated(gp_Vec2d(before.b, last.b) * ratio);
     }
     Contact c = meet(*surfaces_[0], *surfaces_[1], p, direction, sa, sb);
     if (i > 1 && c.residual > 1e-6) {
@@ -270,9 +276,12 @@ bool keeps_pcurve(const ModelEdge& e, const HalfEdge& h) {
          (e.range[0] >= h.pcurve->FirstParameter() - apart && e.range[1] <= h.pcurve->LastParameter() + apart);
 }
 
-// Builds the curves from every other point of a trace; the points between give the tolerance.
-EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& trace, double tolerance) {
+// Builds the curves from every other point of a trace; the points between give the tolerance. `errors` receives that of
+// each span.
+EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& trace, double tolerance,
+                       std::vector<double>& errors) {
   EdgeCurves r;
+  errors.assign(trace.s.size() / 2, 0);
   std::vector<double> t = trace.s;
   const double exact = std::max(1e-8, 0.02 * tolerance);
   std::optional<gp_Lin> line = line_through(trace.contacts, exact);
@@ -326,11 +335,15 @@ EdgeCurves curves_from(const Tracer& tracer, const ModelEdge& e, const Trace& tr
       for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
         const double at = t[k] + (t[k + 1] - t[k]) * part;
         const gp_Pnt2d uv = r.pcurves[i]->Value(at);
-        r.tolerance = std::max(r.tolerance, tracer.surface(i)->Value(uv.X(), uv.Y()).Distance(r.curve->Value(at)));
+        const double off = tracer.surface(i)->Value(uv.X(), uv.Y()).Distance(r.curve->Value(at));
+        errors[k / 2] = std::max(errors[k / 2], off);
       }
   }
-  for (std::size_t k = 0; k < t.size(); k++)
-    r.tolerance = std::max(r.tolerance, r.curve->Value(t[k]).Distance(trace.contacts[k].point));
+  for (std::size_t k = 0; k < t.size(); k++) {
+    double& error = errors[std::min(k / 2, errors.size() - 1)];
+    error = std::max(error, r.curve->Value(t[k]).Distance(trace.contacts[k].point));
+  }
+  r.tolerance = *std::max_element(errors.begin(), errors.end());
   return r;
 }
 
@@ -371,21 +384,42 @@ EdgeCurves chord(const Model& model, const ModelEdge& e) {
   return r;
 }
 
+// Shares of the way with each span in two whose error is larger than asked and than its faces miss each other by. A
+// span has one of them in its middle.
+std::vector<double> halved(const std::vector<double>& shares, const Trace& trace, const std::vector<double>& errors,
+                           double asked) {
+  std::vector<double> finer = {shares.front()};
+  for (std::size_t span = 0; span < errors.size(); span++) {
+    const double first = shares[2 * span], middle = shares[2 * span + 1], last = shares[2 * span + 2];
+    double residual = 0;
+    for (std::size_t k = 2 * span; k <= 2 * span + 2; k++) residual = std::max(residual, trace.contacts[k].residual);
+    if (errors[span] > std::max(asked, 2.2 * residual))
+      finer.insert(finer.end(), {(first + middle) / 2, middle, (middle + last) / 2});
+    else finer.push_back(middle);
+    finer.push_back(last);
+  }
+  return finer;
+}
+
 }  // namespace
 
 EdgeCurves edge_curves(const Model& model, int edge, const Tolerances& tolerances) {
   const ModelEdge& e = model.edges[edge];
   if (e.kind == EdgeKind::Chord) return chord(model, e);
   const Tracer tracer(model, edge);
+  std::vector<double> shares;
+  for (int i = 0; i <= 2 * kFirstSpans; i++) shares.push_back(static_cast<double>(i) / (2 * kFirstSpans));
   EdgeCurves best;
-  for (int spans = 2 * kFirstSpans; spans <= kMostSpans; spans *= 2) {
-    const Trace trace = tracer.trace(spans);
-    double residual = 0;
-    for (const Contact& c : trace.contacts) residual = std::max(residual, c.residual);
-    EdgeCurves r = curves_from(tracer, e, trace, tolerances.curve);
+  for (int round = 0; round < kMostHalvings; round++) {
+    const Trace trace = tracer.trace(shares);
+    std::vector<double> errors;
+    EdgeCurves r = curves_from(tracer, e, trace, tolerances.curve, errors);
     r.folds = trace.folds;
     if (best.curve.IsNull() || r.tolerance < best.tolerance) best = r;
-    if (r.folds || best.tolerance <= std::max(tolerances.curve, 2.2 * residual)) break;
+    if (r.folds || errors.size() >= kMostSpans) break;
+    const std::size_t count = shares.size();
+    shares = halved(shares, trace, errors, tolerances.curve);
+    if (shares.size() == count) break;
   }
   return best;
 }

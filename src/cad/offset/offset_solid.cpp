@@ -18,6 +18,10 @@
 namespace vdb_offset::cad {
 namespace {
 
+// Readers of STEP find tolerances anew, from fewer points than checkers of it take, unless curves are within
+// OpenCASCADE's own 1e-7.
+constexpr double kCurve = 5e-8;
+
 double vertex_margin(double distance) { return 2.5 * std::abs(distance); }
 
 /// A distance along Su x Sv, of one towards the outside.
@@ -119,7 +123,7 @@ Tolerances tolerances_of(const OffsetCadRequest& request) {
   Tolerances tolerances;
   tolerances.distance = std::abs(request.distance);
   tolerances.fit = request.fit_tolerance > 0 ? request.fit_tolerance : 1e-4 * tolerances.distance;
-  tolerances.curve = std::max(1e-7, 1e-5 * tolerances.distance);
+  tolerances.curve = kCurve;
   tolerances.gap = 2e-3 * tolerances.distance;
   return tolerances;
 }

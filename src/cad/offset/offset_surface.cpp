@@ -240,23 +240,50 @@ double longest_span(const Geom_Surface& surface, const Box2& box, double detail,
   return range / std::min(spans, kManySpans);
 }
 
+// Points and normals of a surface within a box and somewhat beyond. Beyond a pole normals turn over: there the surface
+// goes on straight, as at the apex of a cone. At a pole the normal is what those beside it come to: of a round one,
+// that along the axis, so that the offset closes there as well.
+struct PoleNormals {
+  const Geom_Surface& surface;
+  const Box2& box;
+  const Sides& poles;
+
+  static constexpr double kBeside = 1e-4;  // of the box
+
+  gp_Pnt2d beside(const gp_Pnt2d& at, double steps) const {
+    const auto moved = [steps](double t, double t0, double t1, bool pole0, bool pole1) {
+      const double step = steps * kBeside * (t1 - t0);
+      return std::clamp(t, pole0 ? t0 + step : t - 1, pole1 ? t1 - step : t + 1);
+    };
+    return {moved(at.X(), box.u0, box.u1, poles.u0, poles.u1), moved(at.Y(), box.v0, box.v1, poles.v0, poles.v1)};
+  }
+
+  gp_Pnt point(double u, double v) const {
+    const gp_Pnt2d at(u, v), in = beside(at, 0), from = beside(at, 1);
+    if (in.Distance(at) == 0) return surface.Value(u, v);
+    gp_Pnt p;
+    gp_Vec du, dv;
+    surface.D1(from.X(), from.Y(), p, du, dv);
+    return p.Translated(du * (u - from.X()) + dv * (v - from.Y()));
+  }
+
+  gp_Vec normal(double u, double v) const {
+    const gp_Pnt2d in = beside({u, v}, 0), near = beside(in, 1), far = beside(in, 2);
+    const gp_Vec n = unit_normal(surface, near.X(), near.Y(), box);
+    if (near.Distance(in) == 0) return n;
+    const double ratio = in.Distance(near) / near.Distance(far);
+    return (n + (n - unit_normal(surface, far.X(), far.Y(), box)) * ratio).Normalized();
+  }
+};
+
 OffsetSurface fitted(const Handle(Geom_Surface) & surface, const Box2& box, const FaceDistance& distance,
                      const Sides& drawn_sides, double margin, double tolerance) {
   const bool is_constant = !distance.at;
   const Sides poles = poles_of(*surface, box);
   const Box2 wide = drawn_out(*surface, box, poles, drawn_sides, margin);
-  // Beyond a pole normals turn over: as at a cone's apex, the offset goes on straight from beside it.
-  const auto beside = [](double t, double t0, double t1, bool pole0, bool pole1) {
-    const double step = 1e-4 * (t1 - t0);
-    return std::clamp(t, pole0 ? t0 + step : t - 1, pole1 ? t1 - step : t + 1);
-  };
+  const PoleNormals normals{*surface, box, poles};
   const auto map = [&](double u, double v) {
-    const double bu = beside(u, box.u0, box.u1, poles.u0, poles.u1), bv = beside(v, box.v0, box.v1, poles.v0, poles.v1);
-    if (bu == u && bv == v) return surface->Value(u, v).Translated(unit_normal(*surface, u, v, box) * distance(u, v));
-    gp_Pnt p;
-    gp_Vec du, dv;
-    surface->D1(bu, bv, p, du, dv);
-    return p.Translated(du * (u - bu) + dv * (v - bv) + unit_normal(*surface, bu, bv, box) * distance(bu, bv));
+    return normals.point(u, v).Translated(normals.normal(u, v) * distance(u, v));
   };
   OffsetSurface result;
   result.made = FaceMade::Fitted;

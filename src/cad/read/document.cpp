@@ -18,6 +18,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "read/poles.h"
+
 namespace vdb_offset::cad {
 namespace {
 
@@ -140,7 +142,7 @@ class Walk {
     TopoDS_Shape shape;
     if (XCAFDoc_ShapeTool::GetShape(label, shape) && !shape.IsNull()) {
       location_ = location;
-      add_faces(shape.Located(location * shape.Location()), label, told);
+      add_faces(closed_at_poles(shape.Located(location * shape.Location())), label, told);
       location_ = TopLoc_Location();
     }
   }

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <optional>
 
-#include "ground/mesh/point_triangle.h"
 #include "ground/process/progress.h"
 #include "judge/judge.h"
+#include "judge/moved_faces.h"
 #include "judge/parameters.h"
 #include "judge/soup.h"
 #include "judge/soup_samples.h"
@@ -97,8 +97,9 @@ class BodyChecker {
     const auto is_alike = [&](const Body& each) { return each.is_solid == body_.body.is_solid; };
     if (again.bodies.size() != model.shapes.size() ||
         !std::all_of(again.bodies.begin(), again.bodies.end(), is_alike)) {
-      gap("read again, the file has " + std::to_string(again.bodies.size()) + " bodies and not " +
-          std::to_string(model.shapes.size()));
+      const auto alike = std::count_if(again.bodies.begin(), again.bodies.end(), is_alike);
+      gap("read again, the file has " + std::to_string(alike) + (body_.body.is_solid ? " solids" : " shells") +
+          " and not " + std::to_string(model.shapes.size()));
       return {};
     }
     const double millimetres = in_millimetres(again, asked_);
@@ -145,19 +146,30 @@ class BodyChecker {
     distance = {0, 0, asked_.largest(), false};
     std::size_t samples = 0;
     double least = 1, most = 1, worst = 0;
+    std::vector<MovedFace> moved;
     std::size_t k = 0;
-    for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k)
-      for (const TopoDS_Face& made : faces_made_of(k)) {
+    for (TopExp_Explorer face(body_.source.shape, TopAbs_FACE); face.More(); face.Next(), ++k) {
+      moved.push_back({TopoDS::Face(face.Current()), faces_made_of(k), INFINITY});
+      for (const TopoDS_Face& made : moved.back().made) {
         const AtParameters here = measure_at_parameters(TopoDS::Face(face.Current()), made, body_.distances[k],
                                                         kSamples / result_.made_of.size() + 1, distance);
         samples += here.samples;
         least = std::min(least, here.least);
         most = std::max(most, here.most);
         worst = std::max(worst, here.worst);
+        moved.back().least = std::min(moved.back().least, here.asked);
       }
+    }
     report_measured(samples, least, most);
-    if (worst <= kMostOff * asked_.largest()) return !asked_.write.thick || is_wall_thick();
-    gap("a face is off its distance by up to " + std::to_string(worst / asked_.millimetres));
+    if (worst > kMostOff * asked_.largest()) {
+      gap("a face is off its distance by up to " + std::to_string(worst / asked_.millimetres));
+      return false;
+    }
+    const auto near = distance.has_one_side() ? nearer_than_asked(moved, asked_.largest()) : std::nullopt;
+    if (!near) return true;
+    gap("a face is nearer to the source than asked: " + std::to_string(near->distance / near->asked) +
+        " of the distance, as at " + in_file(near->point.X()) + " " + in_file(near->point.Y()) + " " +
+        in_file(near->point.Z()));
     return false;
   }
 
@@ -169,40 +181,6 @@ class BodyChecker {
         faces.push_back(TopoDS::Face(face.Current()));
     if (faces.empty()) faces.emplace_back();
     return faces;
-  }
-
-  /// Whether all that has moved is as far from the faces that moved as it ought to be, to 1 %, if all of them go by one
-  /// distance. Where these end at an opening, walls go on in its surface, and may be nearer to the edge between.
-  bool is_wall_thick() {
-    constexpr double kLeast = 0.99, kOff = 0.002;  // distances; the latter of triangles from the faces
-    const std::optional<double> asked = body_.distance_of_moved();
-    if (!asked) return true;
-    const double far = std::abs(*asked);
-    const Soup from(body_.faces_that(false), kOff * far, kOff * far, 0.25);
-    const Soup open(body_.faces_that(true), kOff * far, kOff * far, 0.25);
-    TopoDS_Compound moved;
-    BRep_Builder builder;
-    builder.MakeCompound(moved);
-    for (std::size_t k = 0; k < result_.made_of.size(); ++k)
-      for (const TopoDS_Face& face : faces_made_of(k))
-        if (!body_.stays(k) && !face.IsNull()) builder.Add(moved, face);
-    for (const SoupPoint& at : spread(Soup::of_result(moved, far), JudgeOptions().samples)) {
-      const Soup::Nearest nearest = from.nearest(at.point, kLeast * far, {nullptr, {}});
-      if (nearest.triangle < 0) continue;
-      const gp_Pnt foot = foot_of(at.point, from.triangles()[nearest.triangle]);
-      if (open.nearest(foot, 5 * kOff * far, {nullptr, {}}).triangle >= 0) continue;
-      gap("the wall is thinner than the distance: " + std::to_string(nearest.distance / far) + " of it, as at " +
-          in_file(at.point.X()) + " " + in_file(at.point.Y()) + " " + in_file(at.point.Z()));
-      return false;
-    }
-    return true;
-  }
-
-  static gp_Pnt foot_of(const gp_Pnt& point, const Soup::Triangle& triangle) {
-    const auto vector = [](const gp_Pnt& p) { return Vec3d(p.X(), p.Y(), p.Z()); };
-    const auto& [a, b, c] = triangle.points;
-    const Vec3d foot = closest_on_triangle(vector(point), vector(a), vector(b), vector(c)).point;
-    return {foot.x(), foot.y(), foot.z()};
   }
 
   std::string in_file(double millimetres) const { return std::to_string(millimetres / asked_.millimetres); }
