@@ -102,6 +102,15 @@ std::span<const std::uint32_t> cad_face_of(const MeshFile& source) {
   return model->mesh().face_of;
 }
 
+std::vector<std::uint32_t> cad_body_of(const MeshFile& source) {
+  const auto* const model = dynamic_cast<const CadSurface*>(source.exact.get());
+  std::vector<std::uint32_t> bodies;
+  if (!model) return bodies;
+  bodies.reserve(model->mesh().face_of.size());
+  for (const std::uint32_t face : model->mesh().face_of) bodies.push_back(model->mesh().faces[face].body);
+  return bodies;
+}
+
 CadFileFacts write_cad(const std::string& path, const MeshFile& source, const CadDistances& distances,
                        std::span<const Vec3d> positions, const CadWriting& how) {
   const auto* const model = dynamic_cast<const CadSurface*>(source.exact.get());

@@ -248,7 +248,7 @@ TEST_CASE("cad: messages that are cut off or lead astray are refused", "[cad]") 
   mesh.face_of = {0};
   mesh.corner_parameters.resize(3);
   mesh.corner_normals.assign(3, Vec3d(0, 0, 1));
-  mesh.faces = {{"name", "layer", {{0.1, 0.2, 0.3}}, "solid", "plane", {0, 1}, {2, 3}, "left", {"left", "arm"}}};
+  mesh.faces = {{"name", "layer", {{0.1, 0.2, 0.3}}, "solid", "plane", {0, 1}, {2, 3}, "left", {"left", "arm"}, 3}};
   mesh.edges = {{0, 1}};
   mesh.edge_kinds = {io::CadEdge::Sharp};
   mesh.extras = {"3 free curves"};
@@ -259,6 +259,7 @@ TEST_CASE("cad: messages that are cut off or lead astray are refused", "[cad]") 
   CHECK(back.faces[0].name == "name");
   CHECK((*back.faces[0].colour)[2] == 0.3);
   CHECK(back.faces[0].instance == "left");
+  CHECK(back.faces[0].body == 3);
   CHECK(back.faces[0].within == mesh.faces[0].within);
   for (std::size_t size = 0; size < bytes.size(); ++size)
     REQUIRE_THROWS_AS(io::unpack_mesh(std::string_view(bytes).substr(0, size)), BadMessage);

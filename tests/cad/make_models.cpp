@@ -391,6 +391,7 @@ int main(int count, char** words) {
   folder = words[1];
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
   write_step(block(), "block.step", "MM");
+  write_step(on_top_of_each_other(block(), 20), "twin_blocks.step", "MM");
   write_brep(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape(), "sphere.brep");
   write_brep(BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeSphere(gp_Pnt(1, 2, 3), 10).Shape()).Shape(), "spline.brep");
   write_brep(patch_with_hole(), "patch.brep");

@@ -5,6 +5,7 @@
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepLib.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -14,6 +15,7 @@
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Solid.hxx>
 #include <cmath>
+#include <gp_Trsf.hxx>
 #include <numbers>
 
 TopoDS_Shape rounded_block() {
@@ -86,4 +88,15 @@ TopoDS_Shape crossed() {
   builder.Add(all, BRepPrimAPI_MakeBox(gp_Pnt(-2, -10, -2), gp_Pnt(2, 10, 2)).Shape());
   builder.Add(all, BRepPrimAPI_MakeBox(gp_Pnt(20, 20, 20), gp_Pnt(22, 22, 22)).Shape());
   return all;
+}
+
+TopoDS_Shape on_top_of_each_other(const TopoDS_Shape& one, double height) {
+  gp_Trsf up;
+  up.SetTranslation(gp_Vec(0, 0, height));
+  BRep_Builder builder;
+  TopoDS_Compound both;
+  builder.MakeCompound(both);
+  builder.Add(both, one);
+  builder.Add(both, BRepBuilderAPI_Transform(one, up, true).Shape());
+  return both;
 }

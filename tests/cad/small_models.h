@@ -19,3 +19,5 @@ TopoDS_Shape turned_cube();
 TopoDS_Shape touching();
 /// Two bars that cross each other at right angles, and a cube beside them.
 TopoDS_Shape crossed();
+/// A shape and a copy of it that stands on it.
+TopoDS_Shape on_top_of_each_other(const TopoDS_Shape& one, double height);

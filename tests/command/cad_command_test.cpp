@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cad/cad_files.h"
 #include "command/shell_command.h"
 #include "support/places.h"
 
@@ -36,4 +37,21 @@ TEST_CASE("command: beside what stays, a CAD model's vertices are measured from 
   CHECK_THAT(run.out, Catch::Contains("from the faces of the CAD model, "));
   const auto facts = nlohmann::json::parse(shell.slurp(shell.file("higher.json")))["cad_faces"];
   CHECK(facts["worst_error"].get<double>() < 1e-9);
+}
+
+TEST_CASE("command: in CAD models out, bodies that touch hold each other back nowhere", "[command][cad]") {
+  REQUIRE(test::cad_files().is_made());
+  const ShellCommand shell;
+  // A face goes farther than a fillet beside it, which takes triangles: in both of two blocks as in one alone.
+  const auto volume = [&](const std::string& arguments) {
+    const Run run = shell(test::cad_files().folder().string() + "/" + arguments + " -d 0.5 --report o.json");
+    CHECK(run.code == 0);
+    const auto report = nlohmann::json::parse(shell.slurp(shell.file("o.json")));
+    CHECK(report["cad_file"]["triangles"].get<int>() > 0);
+    return report["cad_file"]["volume"].get<double>();
+  };
+  const double one = volume("block.step one.step --distance-of face=1:1.2");
+  CHECK(one > 41 * 31 * 20);
+  CHECK(volume("twin_blocks.step two.step --distance-of face=1:1.2 --distance-of face=9:1.2") ==
+        Approx(2 * one).epsilon(1e-6));
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "body_meshes.h"
 #include "distances/part_distances.h"
 #include "messages.h"
 #include "page/run_pages.h"
@@ -261,8 +262,11 @@ Products write_outputs(const Job& job, const Outcome& outcome, Clock::time_point
   else if (!to.paths.empty()) write_paths(to.paths, result.paths);
   io::WriteResult written;
   if (is_cad_output(to.mesh, request)) {
-    made.cad =
-        io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to), result.positions, cad_writing(job));
+    const io::CadWriting how = cad_writing(job);
+    const Distances& distances = job.distances[static_cast<std::size_t>(&to - job.files.outputs.data())];
+    const bool are_apart = !how.exact && !how.holds_back;
+    made.cad = io::write_cad(to.mesh, *job.source.file, distances_of_model(job, to),
+                             are_apart ? offset_bodies(job, distances, result) : result.positions, how);
     written.lost = fmt::format("{}", fmt::join(job.source.file->extras, ", "));
   } else written = write_mesh_or_shell(job, outcome, shell);
   outcome.result.statistics.seconds[static_cast<std::size_t>(Stage::Write)] = seconds_since(writing);

@@ -61,11 +61,15 @@ VDB_OFFSET_API bool is_cad_output(Format format);
 /// Of each face of the mesh the face of the CAD model that it is of, counted from 0. Empty for other files.
 VDB_OFFSET_API std::span<const std::uint32_t> cad_face_of(const MeshFile& source);
 
+/// Of each face of the mesh the body of the CAD model that it is of, counted from 0: a solid, or all that is of none.
+/// Empty for other files.
+VDB_OFFSET_API std::vector<std::uint32_t> cad_body_of(const MeshFile& source);
+
 /// Writes the offset of a CAD model as one, through a temporary file that is renamed at the end: each face becomes one
 /// over the same (u, v), and where such faces fail, triangles of the offset mesh take their place, in one solid with
-/// the others. The file is read again before. \param positions of the offset mesh; empty: as if `how.exact` were asked
-/// for \throw InvalidInput if the source is no CAD model, or a part of one of its faces has another distance;
-/// NoCadModel if nothing could be made; WriteError
+/// the others. The file is read again before. \param positions of the offset mesh, of which each body is best offset by
+/// itself; empty: as if `how.exact` were asked for \throw InvalidInput if the source is no CAD model, or a part of one
+/// of its faces has another distance; NoCadModel if nothing could be made; WriteError
 VDB_OFFSET_API CadFileFacts write_cad(const std::string& path, const MeshFile& source, const CadDistances& distances,
                                       std::span<const Vec3d> positions, const CadWriting& how = {});
 

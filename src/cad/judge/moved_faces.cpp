@@ -28,7 +28,7 @@ class MovedFaces {
   MovedFaces(const std::vector<MovedFace>& faces, double largest)
       : faces_(faces), largest_(largest), source_(source_of(faces), kOff * largest, kOff * largest, 0.25) {
     for (std::size_t k = 0; k < faces.size(); ++k)
-      marks_.try_emplace(faces[k].least, faces.size(), 0).first->second[k] = 1;
+      marks_.try_emplace(faces[k].distance, faces.size(), 0).first->second[k] = 1;
   }
 
   std::optional<TooNear> first() {
@@ -40,9 +40,9 @@ class MovedFaces {
     std::vector<double> own;  // of each made face
     for (const MovedFace& face : faces_)
       for (const TopoDS_Face& made : face.made) {
-        if (face.least <= 0 || made.IsNull()) continue;
+        if (face.distance <= 0 || made.IsNull()) continue;
         builder.Add(all, made);
-        own.push_back(face.least);
+        own.push_back(face.distance);
       }
     if (own.empty()) return std::nullopt;
     const Soup moved = Soup::of_result(all, largest_);
@@ -62,9 +62,9 @@ class MovedFaces {
   }
 
   std::optional<TooNear> too_near(const gp_Pnt& point, double own) const {
-    for (const auto& [least, of] : marks_) {
-      if (least <= 0) continue;
-      const double asked = std::min(least, own);
+    for (const auto& [distance, of] : marks_) {
+      if (distance <= 0) continue;
+      const double asked = std::min(distance, own);
       const Soup::Nearest nearest = source_.nearest(point, kLeast * asked, {&of, {}});
       if (nearest.triangle < 0 || is_at_one_that_stays(foot_of(point, source_.triangles()[nearest.triangle]))) continue;
       return TooNear{point, nearest.distance, asked};

@@ -32,18 +32,14 @@ AtParameters measure_at_parameters(const TopoDS_Face& source, const TopoDS_Face&
   Handle(Geom_Surface) to;
   std::optional<BRepTopAdaptor_FClass2d> in_made;
   if (!made.IsNull()) to = surface_of(made), in_made.emplace(made, 0);
-  const auto take = [&](double here) {
-    asked.add(here);
-    measured.asked = std::min(measured.asked, std::abs(here));
-  };
-  if (!distance.at) take(distance.constant);
+  if (!distance.at) asked.add(distance.constant);
   for (std::size_t i = 1; i <= count; ++i) {
     const auto k = static_cast<double>(i);
     const gp_Pnt2d uv(box.u0 + (box.u1 - box.u0) * fraction(k * kStepU),
                       box.v0 + (box.v1 - box.v0) * fraction(k * kStepV));
     if (in_source.Perform(uv) != TopAbs_IN) continue;
     const double here = distance(uv.X(), uv.Y());
-    take(here);
+    asked.add(here);
     if (!in_made || in_made->Perform(uv) != TopAbs_IN) continue;
     const gp_Vec normal = unit_normal(*from, uv.X(), uv.Y(), box) * sign;
     if (normal.Magnitude() < 0.5) continue;

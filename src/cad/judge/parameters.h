@@ -2,7 +2,6 @@
 #pragma once
 
 #include <TopoDS_Face.hxx>
-#include <cmath>
 #include <cstddef>
 
 #include "judge/judge.h"
@@ -14,7 +13,6 @@ namespace vdb_offset::cad {
 struct AtParameters {
   std::size_t samples = 0;
   double least = 1, most = 1;  ///< As shares of what the distance is there; of points whose distance is not 0.
-  double asked = INFINITY;     ///< The least that the distance is, without its sign.
   double worst = 0;            ///< How far points are from where they ought to be, in the shape's unit.
 };
 

@@ -33,6 +33,7 @@ struct CadFaceFacts {
   std::array<double, 2> u{}, v{};               ///< The ranges of its parameters.
   std::string instance;  ///< What the part, or the innermost assembly that has a name, is called where it is placed.
   std::vector<std::string> within;  ///< The names of all parts and assemblies that it is in, and of their places.
+  std::uint32_t body = 0;           ///< The number of the solid that it is of; the last one if it is of none.
 };
 
 /// How the faces of a CAD model meet along an edge of the tessellation.

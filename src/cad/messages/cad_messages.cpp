@@ -40,7 +40,7 @@ void put_face(Packer& packer, const CadFaceFacts& face) {
   packer.text(face.name).text(face.layer).text(face.solid).text(face.kind).text(face.instance);
   put_texts(packer, face.within);
   packer.value(std::uint8_t{face.colour.has_value()}).value(face.colour.value_or(Numbers{}));
-  packer.value(face.u).value(face.v);
+  packer.value(face.u).value(face.v).value(face.body);
 }
 
 CadFaceFacts take_face(Unpacker& unpacker) {
@@ -52,6 +52,7 @@ CadFaceFacts take_face(Unpacker& unpacker) {
   if (has_colour) face.colour = colour;
   face.u = unpacker.value<std::array<double, 2>>();
   face.v = unpacker.value<std::array<double, 2>>();
+  face.body = unpacker.value<std::uint32_t>();
   return face;
 }
 

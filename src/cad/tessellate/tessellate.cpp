@@ -183,6 +183,9 @@ Tessellation tessellate(CadModel& model, const io::CadFineness& fineness) {
   io::CadMesh& result = made.mesh;
   Work work;
   for (Body& body : model.bodies) made.bodies.push_back(append_tessellated(body, deflection, result, work));
+  std::size_t face = 0;
+  for (std::uint32_t b = 0; b < model.bodies.size(); ++b)
+    for (std::size_t k = 0; k < model.bodies[b].faces.size(); ++k) result.faces[face++].body = b;
   result.deflection = std::max(deflection, work.farthest);
   result.unit_micrometres = model.unit_micrometres;
   result.has_unit = model.has_unit;
