@@ -3,6 +3,7 @@
 // program of its own, as it is linked to OpenCASCADE.
 #include <unistd.h>
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepGProp.hxx>
@@ -26,9 +27,11 @@
 #include <cmath>
 #include <cstdio>
 #include <gp_Ax2.hxx>
+#include <gp_Pln.hxx>
 #include <gp_Vec.hxx>
 
 #include "judge/judge.h"
+#include "judge/moved_faces.h"
 #include "judge/soup.h"
 #include "surface/face_grid.h"
 #include "surface/make_triangles.h"
@@ -176,6 +179,23 @@ bool is_time_limited() {
   return is_ended && gap.find("too long") != std::string::npos && reply && *reply == "in time";
 }
 
+/// Of parallel squares, 1.5 apart, of which the lower one goes up by 1: it is in the way of the upper one where that
+/// moves by 1, or by 0.8, and neither where it stays nor where it moves by 0.4.
+bool are_moved_faces_measured() {
+  const auto square = [](double height) {
+    return BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0, 0, height), gp_Dir(0, 0, 1)), 0, 10, 0, 10).Face();
+  };
+  bool are_right = true;
+  for (const auto& [distance, least] : {std::array{1.0, 0.5}, {0.8, 0.5}, {0.4, 0.0}, {0.0, 0.0}}) {
+    const auto near = vdb_offset::cad::nearer_than_asked(
+        {{square(0), {square(1)}, 1}, {square(1.5), {square(1.5 + distance)}, distance}}, 1);
+    const double found = near ? near->distance : 0;
+    std::printf("squares at 1.5 that move by 1 and %g: %g of %g\n", distance, found, near ? near->asked : 0);
+    are_right = are_right && std::abs(found - least) < 1e-9 && (!near || near->asked == distance);
+  }
+  return are_right;
+}
+
 }  // namespace
 
 int main() {
@@ -187,6 +207,6 @@ int main() {
   const bool is_wrong =
       is_as_expected("two holes in each other", false, source, holes_in_each_other(kDistance), kDistance);
   const bool is_nesting_right = are_shells_right(), is_grid_right = are_grids_right();
-  const bool is_rest_right = are_turns_right() && is_time_limited();
+  const bool is_rest_right = are_turns_right() && is_time_limited() && are_moved_faces_measured();
   return is_right && is_wrong && is_nesting_right && is_grid_right && is_rest_right ? 0 : 1;
 }

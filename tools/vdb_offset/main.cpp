@@ -15,7 +15,7 @@
 #include "file_plan.h"
 #include "iso_command.h"
 #include "job.h"
-#include "layers_command.h"
+#include "layers/layers_command.h"
 #include "messages.h"
 #include "offset_command.h"
 #include "outputs.h"

@@ -2,14 +2,17 @@
 #include "hybrid/hybrid_offset.h"
 
 #include <BRepCheck_Analyzer.hxx>
+#include <BRepCheck_Wire.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
 #include <TopoDS_Solid.hxx>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "ground/mesh/point_triangle.h"
 #include "hybrid/hybrid_model.h"
@@ -22,6 +25,7 @@ namespace {
 
 constexpr int kMostRounds = 40;
 constexpr int kTurnsSamples = 300;
+constexpr double kReach = 0.25;  // distances: how far from a place of a fault triangles are taken in place of faces
 
 /// How far vertices of the mesh may be from exact faces.
 double near_of(ExactParts parts, const Tolerances& tolerances) {
@@ -67,11 +71,10 @@ class HybridOffset::Shell {
   }
 
   /// Makes triangles of what is exact near places; false if nothing is.
-  bool take_off_near(const std::vector<gp_Pnt>& places, double reach) {
+  bool take_off_near(const std::vector<gp_Pnt>& places) {
     bool is_any = false;
     for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
-      const auto is_near = [&](const gp_Pnt& place) { return distance_from(place, mesh_, t) <= reach; };
-      if (!on_.is_on(t) || std::none_of(places.begin(), places.end(), is_near)) continue;
+      if (!on_.is_on(t) || !is_near(t, places)) continue;
       on_.take_off(t);
       is_any = true;
     }
@@ -91,16 +94,65 @@ class HybridOffset::Shell {
   void add_bad_faces(std::vector<int>& bad) const {
     if (built_.shell.IsNull()) return;
     for (std::size_t f = 0; f < built_.faces.size() && hybrid_.source_faces[f] >= 0; ++f)
-      if (!BRepCheck_Analyzer(built_.faces[f]).IsValid()) append(hybrid_.triangles_of_face[f], bad);
+      if (!BRepCheck_Analyzer(built_.faces[f]).IsValid()) append(triangles_at_fault(static_cast<int>(f)), bad);
     if (!bad.empty()) return;
     const Soup soup = Soup::of_result(built_.shell, tolerances_.distance);
-    for (const auto& pair : soup.crossing_faces())
-      for (const int f : pair) append(hybrid_.triangles_of_face[f], bad);
+    append(triangles_that_cross(soup), bad);
     if (!bad.empty() || !built_.shell.Closed()) return;
     for (const int f : soup.open_faces()) append(hybrid_.triangles_of_face[f], bad);
     if (!bad.empty()) return;
     if (const auto turned = turned_triangle(soup, tolerances_.distance, kTurnsSamples, true))
       append(hybrid_.triangles_of_face[soup.triangles()[*turned].face], bad);
+  }
+
+  /// Those of faces that cross others; of large ones, those near places where they do.
+  std::vector<int> triangles_that_cross(const Soup& soup) const {
+    constexpr std::size_t kLarge = 200, kMostPlaces = 200;
+    std::vector<int> found;
+    std::set<int> large;
+    for (const auto& pair : soup.crossing_faces())
+      for (const int f : pair)
+        if (hybrid_.triangles_of_face[f].size() > kLarge) large.insert(f);
+        else append(hybrid_.triangles_of_face[f], found);
+    if (large.empty()) return found;
+    const std::vector<gp_Pnt> places = soup.crossings(kMostPlaces);
+    for (const int f : large)
+      for (const int t : hybrid_.triangles_of_face[f])
+        if (is_near(t, places)) found.push_back(t);
+    if (found.empty())
+      for (const int f : large) append(hybrid_.triangles_of_face[f], found);
+    return found;
+  }
+
+  bool is_near(int triangle, const std::vector<gp_Pnt>& places) const {
+    return std::any_of(places.begin(), places.end(), [&](const gp_Pnt& place) {
+      return distance_from(place, mesh_, triangle) <= kReach * tolerances_.distance;
+    });
+  }
+
+  /// Of a face whose borders cross themselves, the triangles where they do, and those beside these; else all.
+  std::vector<int> triangles_at_fault(int f) const {
+    const std::vector<int>& all = hybrid_.triangles_of_face[f];
+    std::set<std::uint32_t> vertices;
+    for (TopExp_Explorer w(built_.faces[f], TopAbs_WIRE); w.More(); w.Next()) {
+      TopoDS_Edge one, other;
+      const Handle(BRepCheck_Wire) wire = new BRepCheck_Wire(TopoDS::Wire(w.Current()));
+      if (wire->SelfIntersect(built_.faces[f], one, other) == BRepCheck_NoError) continue;
+      for (std::size_t e = 0; e < built_.edges.size(); ++e) {
+        const TopoDS_Edge& edge = built_.edges[e];
+        if (edge.IsNull() || !((!one.IsNull() && edge.IsSame(one)) || (!other.IsNull() && edge.IsSame(other))))
+          continue;
+        for (const int t : hybrid_.triangles_of_edge[e])
+          vertices.insert(mesh_.triangles[t].vertices.begin(), mesh_.triangles[t].vertices.end());
+      }
+    }
+    std::vector<int> found;
+    for (const int t : all) {
+      const auto& corners = mesh_.triangles[t].vertices;
+      if (std::any_of(corners.begin(), corners.end(), [&](auto v) { return vertices.count(v) > 0; }))
+        found.push_back(t);
+    }
+    return found.empty() ? all : found;
   }
 
   const Model source_;
@@ -160,9 +212,8 @@ HybridOffset::HybridOffset(const OffsetCadRequest& request, std::vector<ShellMes
 HybridOffset::~HybridOffset() = default;
 
 bool HybridOffset::take_off_near(const std::vector<gp_Pnt>& places) {
-  constexpr double kReach = 0.25;  // distances
   bool is_any = false;
-  for (const auto& shell : shells_) is_any = shell->take_off_near(places, kReach * tolerances_.distance) || is_any;
+  for (const auto& shell : shells_) is_any = shell->take_off_near(places) || is_any;
   return is_any;
 }
 

@@ -56,7 +56,7 @@ class ShellBuilder {
     for (std::size_t e = 0; e < model_.edges.size(); e++) curves_.push_back(curves_of(static_cast<int>(e)));
     if (!built_.trouble.empty()) return built_;
     add_vertices();
-    for (std::size_t e = 0; e < model_.edges.size(); e++) edges_.push_back(edge(static_cast<int>(e)));
+    for (std::size_t e = 0; e < model_.edges.size(); e++) built_.edges.push_back(edge(static_cast<int>(e)));
     TopoDS_Shell shell;
     builder_.MakeShell(shell);
     for (std::size_t f = 0; f < model_.faces.size(); f++) {
@@ -180,7 +180,7 @@ class ShellBuilder {
       for (int h = first;;) {
         const HalfEdge& half = model_.halves[h];
         const bool forward = half.forward == (m.sign > 0);
-        builder_.Add(wire, edges_[half.edge].Oriented(forward ? TopAbs_FORWARD : TopAbs_REVERSED));
+        builder_.Add(wire, built_.edges[half.edge].Oriented(forward ? TopAbs_FORWARD : TopAbs_REVERSED));
         h = m.sign > 0 ? half.next : half.previous;
         if (h == first) break;
       }
@@ -197,7 +197,6 @@ class ShellBuilder {
   Built built_;
   std::vector<EdgeCurves> curves_;
   std::vector<TopoDS_Vertex> vertices_;
-  std::vector<TopoDS_Edge> edges_;
 };
 
 }  // namespace

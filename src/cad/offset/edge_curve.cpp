@@ -374,7 +374,7 @@ EdgeCurves chord(const Model& model, const ModelEdge& e) {
       multiplicities.Init(2);
       r.pcurves[i] = new Geom2d_BSplineCurve(poles, knots, multiplicities, 1);
     }
-    constexpr int kSteps = 8;
+    constexpr int kSteps = 44;  // where OpenCASCADE's check looks, and between
     for (int k = 0; k <= kSteps; k++) {
       const double t = r.last * k / kSteps;
       const gp_Pnt2d uv = r.pcurves[i]->Value(t);

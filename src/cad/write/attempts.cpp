@@ -14,7 +14,7 @@
 namespace vdb_offset::cad {
 namespace {
 
-constexpr unsigned kTrial = 60, kHybrid = 60, kOther = 15;  // seconds
+constexpr unsigned kTrial = 60, kHybrid = 120, kOther = 15;  // seconds
 
 // The share of an attempt that is shown as done once the body is made. Measured on six models: 0.1 to 0.4.
 constexpr double kMade = 0.2;

@@ -28,7 +28,7 @@ constexpr unsigned kMostHolding = 120;  // seconds, of the whole model with its 
 constexpr double kBodiesMade = 0.9;
 
 // Shares of the time that may be over once all exact faces have been tried, and once triangles have been.
-constexpr double kTimeOfExact = 0.5, kTimeOfBodies = 0.9;
+constexpr double kTimeOfExact = 0.5, kTimeOfBodies = 0.8;
 constexpr double kTimeOfBody = 0.25;  // of what is left for an attempt at least, if need be
 
 class OffsetWriter {

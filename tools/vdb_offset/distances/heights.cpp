@@ -13,7 +13,7 @@
 
 #include "distances/evaluate.h"
 #include "distances/part_distances.h"
-#include "flow.h"
+#include "layers/flow.h"
 #include "request/option_values.h"
 #include "vdb_offset/io/file_bytes.h"
 #include "vdb_offset/layer_plan.h"

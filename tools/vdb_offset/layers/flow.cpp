@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "flow.h"
+#include "layers/flow.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

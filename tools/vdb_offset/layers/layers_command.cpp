@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "layers_command.h"
+#include "layers/layers_command.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "flow.h"
+#include "layers/flow.h"
 #include "messages.h"
 #include "page/run_pages.h"
 #include "summary/summary.h"
