@@ -207,3 +207,19 @@ TEST_CASE("cad bodies: an opened solid has a rim in the surface of each open fac
       if (at.x() < 35) CHECK(at.z() < 15 + 1e-9);
   }
 }
+
+TEST_CASE("cad bodies: walls of an opened solid that hang together nowhere are solids each", "[cad]") {
+  REQUIRE(test::cad_files().is_made());
+  const io::MeshFile tube = io::read_mesh(path_in("tube.step"));  // radii 8 and 10, height 20
+  io::CadWriting how;
+  how.exact = how.thick = true;
+  const std::vector<io::Selector> walls = {io::parse_selector("not:planar:+z"), io::parse_selector("not:planar:-z")};
+  how.only = io::select_faces(tube, walls);
+  const CadFileFacts facts = io::write_cad(path_in("rings.step"), tube, -0.2, {}, how);
+  CHECK(facts.made == Made::Solid);
+  const double volume = std::numbers::pi * 20 * (10 * 10 - 9.8 * 9.8 + 8.2 * 8.2 - 8 * 8);
+  CHECK(facts.volume == Approx(volume).epsilon(1e-6));
+  const Solids solids = solids_of(io::read_mesh(path_in("rings.step")));
+  CHECK(solids.count == 2);
+  CHECK(solids.volume == Approx(volume).epsilon(1e-3));
+}

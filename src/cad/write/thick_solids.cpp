@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "write/thick_solids.h"
 
+#include <BOPTools_AlgoTools.hxx>
 #include <BRepAlgoAPI_BuilderAlgo.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
@@ -39,9 +40,10 @@ class CutShells {
             ThickSolids& made)
       : larger_(larger), smaller_(smaller), openings_(openings), made_(made) {}
 
-  /// The closed solid between the two, which goes on in the surfaces of the open faces: there, it is what lies in one
-  /// of the two faces alone. Null if that does not close. \param is_outward whether the offset is the larger one
-  TopoDS_Shape joined(bool is_outward) {
+  /// The closed solids between the two, which go on in the surfaces of the open faces: there, they are what lies in one
+  /// of the two faces alone. Walls that hang together nowhere are solids each. None if that does not close.
+  /// \param is_outward whether the offset is the larger one
+  std::vector<TopoDS_Shape> joined(bool is_outward) {
     TopTools_ListOfShape both;
     both.Append(larger_);
     both.Append(smaller_);
@@ -61,12 +63,12 @@ class CutShells {
       for (TopExp_Explorer face(is_turned ? smaller_ : larger_, TopAbs_FACE); face.More(); face.Next())
         if (!open.Contains(face.Current()))
           for (const TopoDS_Face& left : faces_left(face.Current())) add(left, is_turned, face.Current());
-    shell_.Closed(BRep_Tool::IsClosed(shell_));
-    if (!shell_.Closed()) return {};
-    TopoDS_Solid solid;
-    builder_.MakeSolid(solid);
-    builder_.Add(solid, shell_);
-    return solid;
+    if (!BRep_Tool::IsClosed(shell_)) return {};
+    TopTools_ListOfShape parts;
+    BOPTools_AlgoTools::MakeConnexityBlocks(shell_, TopAbs_EDGE, TopAbs_FACE, parts);
+    std::vector<TopoDS_Shape> solids;
+    for (const TopoDS_Shape& part : parts) solids.push_back(solid_of(part));
+    return solids;
   }
 
  private:
@@ -80,6 +82,17 @@ class CutShells {
         left.push_back(TopoDS::Face(piece.Oriented(face.Current().Orientation())));
     }
     return left;
+  }
+
+  TopoDS_Solid solid_of(const TopoDS_Shape& faces) const {
+    TopoDS_Shell shell;
+    builder_.MakeShell(shell);
+    for (TopExp_Explorer face(faces, TopAbs_FACE); face.More(); face.Next()) builder_.Add(shell, face.Current());
+    shell.Closed(true);
+    TopoDS_Solid solid;
+    builder_.MakeSolid(solid);
+    builder_.Add(solid, shell);
+    return solid;
   }
 
   void add(const TopoDS_Face& face, bool is_turned, const TopoDS_Shape& original) {
@@ -124,10 +137,11 @@ ThickSolids thick_solids(const TopoDS_Shape& source, const TopoDS_Shape& offset,
   for (std::size_t i = 0; i < from.size() && from.size() == to.size(); ++i) {
     const TopoDS_Shape &larger = is_outward ? to[i] : from[i], &smaller = is_outward ? from[i] : to[i];
     const std::vector<Opening> open = in_shell(from[i], openings);
-    const TopoDS_Shape solid =
-        open.empty() ? between(larger, smaller) : CutShells(larger, smaller, open, made).joined(is_outward);
-    if (solid.IsNull()) return {};
-    made.solids.push_back(solid);
+    std::vector<TopoDS_Shape> solids;
+    if (open.empty()) solids.push_back(between(larger, smaller));
+    else solids = CutShells(larger, smaller, open, made).joined(is_outward);
+    if (solids.empty()) return {};
+    made.solids.insert(made.solids.end(), solids.begin(), solids.end());
   }
   return made;
 }
