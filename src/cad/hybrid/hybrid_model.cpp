@@ -151,6 +151,10 @@ class Joiner {
   int add_face(const ModelFace& like, int source) {
     ModelFace face = like;
     face.loops.clear();
+    // An edge has one trimming curve a surface: two faces that meet at a seam need two.
+    const auto is_same = [&](int other) { return other == source; };
+    if (source >= 0 && std::any_of(made_.source_faces.begin(), made_.source_faces.end(), is_same))
+      face.offset.surface = Handle(Geom_Surface)::DownCast(face.offset.surface->Copy());
     made_.model.faces.push_back(face);
     made_.source_faces.push_back(source);
     made_.triangles_of_face.emplace_back();

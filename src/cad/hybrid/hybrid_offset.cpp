@@ -12,6 +12,9 @@
 #include <TopoDS_Solid.hxx>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "ground/mesh/point_triangle.h"
@@ -25,6 +28,7 @@ namespace {
 
 constexpr int kMostRounds = 40;
 constexpr int kTurnsSamples = 300;
+constexpr std::size_t kMostPlaces = 200;
 constexpr double kReach = 0.25;  // distances: how far from a place of a fault triangles are taken in place of faces
 
 /// How far vertices of the mesh may be from exact faces.
@@ -59,26 +63,21 @@ class HybridOffset::Shell {
       std::vector<int> bad = hybrid_.off;
       built_ = {};
       if (bad.empty()) {
-        built_ = build_shell(hybrid_.model, tolerances_);
+        built_ = build_shell(hybrid_.model, tolerances_, known_);
         for (const int edge : built_.bad_edges) append(hybrid_.triangles_of_edge[edge], bad);
       }
       if (bad.empty()) add_bad_faces(bad);
-      std::erase_if(bad, [&](int t) { return !on_.is_on(t); });
-      if (bad.empty()) return built_.shell;
-      for (const int t : bad) on_.take_off(t);
+      if (!take_off(bad)) return built_.shell;
     }
     return {};
   }
 
   /// Makes triangles of what is exact near places; false if nothing is.
   bool take_off_near(const std::vector<gp_Pnt>& places) {
-    bool is_any = false;
-    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
-      if (!on_.is_on(t) || !is_near(t, places)) continue;
-      on_.take_off(t);
-      is_any = true;
-    }
-    return is_any;
+    std::vector<int> bad;
+    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t)
+      if (is_near(t, places)) bad.push_back(t);
+    return take_off(bad);
   }
 
   const HybridModel& hybrid() const { return hybrid_; }
@@ -86,6 +85,26 @@ class HybridOffset::Shell {
   const Model& source() const { return source_; }
 
  private:
+  /// Makes triangles of what is exact of bad ones, and of what is exact beside those that are plane already: only that
+  /// can have moved their vertices. False if nothing is.
+  bool take_off(const std::vector<int>& bad) {
+    std::vector<char> is_moved(mesh_.points.size(), 0), is_bad(mesh_.triangles.size(), 0);
+    for (const int t : bad) {
+      is_bad[t] = 1;
+      if (on_.is_on(t)) continue;
+      for (const std::uint32_t v : mesh_.triangles[t].vertices) is_moved[v] = 1;
+    }
+    bool is_any = false;
+    for (int t = 0; t < static_cast<int>(is_bad.size()); ++t) {
+      const auto& corners = mesh_.triangles[t].vertices;
+      const bool is_beside = std::any_of(corners.begin(), corners.end(), [&](auto v) { return is_moved[v] != 0; });
+      if (!on_.is_on(t) || (is_bad[t] == 0 && !is_beside)) continue;
+      on_.take_off(t);
+      is_any = true;
+    }
+    return is_any;
+  }
+
   static void append(const std::vector<int>& more, std::vector<int>& all) {
     all.insert(all.end(), more.begin(), more.end());
   }
@@ -97,31 +116,29 @@ class HybridOffset::Shell {
       if (!BRepCheck_Analyzer(built_.faces[f]).IsValid()) append(triangles_at_fault(static_cast<int>(f)), bad);
     if (!bad.empty()) return;
     const Soup soup = Soup::of_result(built_.shell, tolerances_.distance);
-    append(triangles_that_cross(soup), bad);
+    std::set<int> crossing;
+    for (const auto& pair : soup.crossing_faces()) crossing.insert(pair.begin(), pair.end());
+    append(triangles_near(crossing, [&] { return soup.crossings(kMostPlaces); }), bad);
     if (!bad.empty() || !built_.shell.Closed()) return;
-    for (const int f : soup.open_faces()) append(hybrid_.triangles_of_face[f], bad);
+    const std::vector<int> open = soup.open_faces();
+    append(triangles_near({open.begin(), open.end()}, [&] { return soup.open_places(); }), bad);
     if (!bad.empty()) return;
     if (const auto turned = turned_triangle(soup, tolerances_.distance, kTurnsSamples, true))
       append(hybrid_.triangles_of_face[soup.triangles()[*turned].face], bad);
   }
 
-  /// Those of faces that cross others; of large ones, those near places where they do.
-  std::vector<int> triangles_that_cross(const Soup& soup) const {
-    constexpr std::size_t kLarge = 200, kMostPlaces = 200;
-    std::vector<int> found;
-    std::set<int> large;
-    for (const auto& pair : soup.crossing_faces())
-      for (const int f : pair)
-        if (hybrid_.triangles_of_face[f].size() > kLarge) large.insert(f);
-        else append(hybrid_.triangles_of_face[f], found);
-    if (large.empty()) return found;
-    const std::vector<gp_Pnt> places = soup.crossings(kMostPlaces);
-    for (const int f : large)
-      for (const int t : hybrid_.triangles_of_face[f])
-        if (is_near(t, places)) found.push_back(t);
-    if (found.empty())
-      for (const int f : large) append(hybrid_.triangles_of_face[f], found);
-    return found;
+  /// Those of some faces; of large ones, those near places.
+  std::vector<int> triangles_near(const std::set<int>& faces,
+                                  const std::function<std::vector<gp_Pnt>()>& find_places) const {
+    constexpr std::size_t kLarge = 200;
+    std::vector<int> found, of_large;
+    for (const int f : faces)
+      append(hybrid_.triangles_of_face[f], hybrid_.triangles_of_face[f].size() > kLarge ? of_large : found);
+    if (of_large.empty()) return found;
+    const std::vector<gp_Pnt> places = find_places();
+    for (const int t : of_large)
+      if (is_near(t, places)) found.push_back(t);
+    return found.empty() ? of_large : found;
   }
 
   bool is_near(int triangle, const std::vector<gp_Pnt>& places) const {
@@ -130,35 +147,76 @@ class HybridOffset::Shell {
     });
   }
 
-  /// Of a face whose borders cross themselves, the triangles where they do, and those beside these; else all.
+  /// Of a face that is not valid, the triangles beside edges that may be at fault, and those beside these; else all.
   std::vector<int> triangles_at_fault(int f) const {
+    std::set<int> edges = edges_that_cross(f);
+    edges.merge(edges_at_pinches(f));
+    if (edges.empty()) edges = edges_of_holes(f);
+    std::vector<char> is_beside(mesh_.points.size(), 0);
+    for (const int e : edges)
+      for (const int t : hybrid_.triangles_of_edge[e])
+        for (const std::uint32_t v : mesh_.triangles[t].vertices) is_beside[v] = 1;
     const std::vector<int>& all = hybrid_.triangles_of_face[f];
-    std::set<std::uint32_t> vertices;
+    std::vector<int> found;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(found), [&](int t) {
+      const auto& corners = mesh_.triangles[t].vertices;
+      return std::any_of(corners.begin(), corners.end(), [&](auto v) { return is_beside[v] != 0; });
+    });
+    return found.empty() ? all : found;
+  }
+
+  /// Those of a border of a face that cross each other.
+  std::set<int> edges_that_cross(int f) const {
+    std::set<int> found;
     for (TopExp_Explorer w(built_.faces[f], TopAbs_WIRE); w.More(); w.Next()) {
       TopoDS_Edge one, other;
       const Handle(BRepCheck_Wire) wire = new BRepCheck_Wire(TopoDS::Wire(w.Current()));
       if (wire->SelfIntersect(built_.faces[f], one, other) == BRepCheck_NoError) continue;
       for (std::size_t e = 0; e < built_.edges.size(); ++e) {
         const TopoDS_Edge& edge = built_.edges[e];
-        if (edge.IsNull() || !((!one.IsNull() && edge.IsSame(one)) || (!other.IsNull() && edge.IsSame(other))))
-          continue;
-        for (const int t : hybrid_.triangles_of_edge[e])
-          vertices.insert(mesh_.triangles[t].vertices.begin(), mesh_.triangles[t].vertices.end());
+        if (!edge.IsNull() && ((!one.IsNull() && edge.IsSame(one)) || (!other.IsNull() && edge.IsSame(other))))
+          found.insert(static_cast<int>(e));
       }
     }
-    std::vector<int> found;
-    for (const int t : all) {
-      const auto& corners = mesh_.triangles[t].vertices;
-      if (std::any_of(corners.begin(), corners.end(), [&](auto v) { return vertices.count(v) > 0; }))
-        found.push_back(t);
+    return found;
+  }
+
+  /// Those that start where another of the same face does, which leaves open how its borders go on.
+  std::set<int> edges_at_pinches(int f) const {
+    std::set<int> found;
+    std::map<int, int> first_at;  // vertices
+    for (const int loop : hybrid_.model.faces[f].loops)
+      for (const int h : halves_of(loop)) {
+        const HalfEdge& half = hybrid_.model.halves[h];
+        const auto [at, is_new] = first_at.try_emplace(half.vertex, half.edge);
+        if (!is_new && hybrid_.model.edges[half.edge].kind != EdgeKind::Pole) found.insert({at->second, half.edge});
+      }
+    return found;
+  }
+
+  /// Those of all borders but the longest.
+  std::set<int> edges_of_holes(int f) const {
+    std::set<int> found;
+    std::vector<int> outer;
+    for (const int loop : hybrid_.model.faces[f].loops) {
+      std::vector<int> inner = halves_of(loop);
+      if (inner.size() > outer.size()) std::swap(inner, outer);
+      for (const int h : inner) found.insert(hybrid_.model.halves[h].edge);
     }
-    return found.empty() ? all : found;
+    return found;
+  }
+
+  std::vector<int> halves_of(int loop) const {
+    std::vector<int> halves = {loop};
+    for (int h = hybrid_.model.halves[loop].next; h != loop; h = hybrid_.model.halves[h].next) halves.push_back(h);
+    return halves;
   }
 
   const Model source_;
   const ShellMesh& mesh_;
   const Tolerances& tolerances_;
   OnSurfaces on_;
+  KnownCurves known_;
   HybridModel hybrid_;
   Built built_;
 };
@@ -233,6 +291,7 @@ OffsetCadResult HybridOffset::make() {
       result.faces.push_back(made_by(face.offset.made));
     }
     result.made_of.resize(result.faces.size());
+    if (meshes_[s].triangles.empty()) continue;  // of a face no wider than a line
     const TopoDS_Shape made = shell.make();
     if (made.IsNull()) result.gaps.emplace_back("exact faces and triangles do not join");
     else builder.Add(is_solid ? static_cast<TopoDS_Shape&>(solid) : all, made);

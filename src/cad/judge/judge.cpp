@@ -200,7 +200,13 @@ class Judge {
   }
 
   void check_topology() {
-    if (!BRepCheck_Analyzer(result_).IsValid()) fault("the topology is not valid");
+    if (const BRepCheck_Analyzer check(result_); !check.IsValid()) {
+      std::vector<gp_Pnt> places;
+      for (TopExp_Explorer face(result_, TopAbs_FACE); face.More(); face.Next())
+        for (TopExp_Explorer at(face.Current(), TopAbs_VERTEX); at.More() && !check.IsValid(face.Current()); at.Next())
+          places.push_back(BRep_Tool::Pnt(TopoDS::Vertex(at.Current())));
+      fault("the topology is not valid", places);
+    }
     const Counts was = counts_of(source_), is = counts_of(result_);
     is_closed_ = was.open == 0;
     // Solids may fall apart, and shells of them grow together or vanish: points tell whether they do so rightly.

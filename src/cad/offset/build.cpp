@@ -12,6 +12,8 @@
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace vdb_offset::cad {
 namespace {
@@ -50,7 +52,8 @@ void close_poles(Model& model) {
 
 class ShellBuilder {
  public:
-  ShellBuilder(const Model& model, const Tolerances& tolerances) : model_(model), tolerances_(tolerances) {}
+  ShellBuilder(const Model& model, const Tolerances& tolerances, KnownCurves& known)
+      : model_(model), tolerances_(tolerances), known_(known) {}
 
   Built build() {
     for (std::size_t e = 0; e < model_.edges.size(); e++) curves_.push_back(curves_of(static_cast<int>(e)));
@@ -84,7 +87,7 @@ class ShellBuilder {
     }
     EdgeCurves c;
     try {
-      c = edge_curves(model_, e, tolerances_);
+      c = known_.of(model_, e, tolerances_);
     } catch (const Standard_Failure& failure) {
       trouble(std::string(": ") + failure.GetMessageString());
       return c;
@@ -193,6 +196,7 @@ class ShellBuilder {
 
   const Model& model_;
   const Tolerances& tolerances_;
+  KnownCurves& known_;
   BRep_Builder builder_;
   Built built_;
   std::vector<EdgeCurves> curves_;
@@ -201,9 +205,42 @@ class ShellBuilder {
 
 }  // namespace
 
-Built build_shell(Model& model, const Tolerances& tolerances) {
+bool KnownCurves::Key::operator<(const Key& other) const {
+  return std::tie(surfaces, pcurves, numbers) < std::tie(other.surfaces, other.pcurves, other.numbers);
+}
+
+KnownCurves::Key KnownCurves::key_of(const Model& model, const ModelEdge& edge) {
+  Key key;
+  std::size_t count = 0;
+  const auto add = [&](std::initializer_list<double> numbers) {
+    for (const double each : numbers) key.numbers[count++] = each;
+  };
+  add({edge.range[0], edge.range[1]});
+  const int one = edge.half[0] >= 0 ? edge.half[0] : edge.half[1];
+  for (const int vertex : {model.halves[one].vertex, end_vertex(model, one)}) {
+    const gp_Pnt& at = model.vertices[vertex].point;
+    add({at.X(), at.Y(), at.Z()});
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (edge.half[i] < 0) continue;
+    const HalfEdge& half = model.halves[edge.half[i]];
+    key.surfaces[i] = model.faces[half.face].offset.surface;
+    key.pcurves[i] = half.pcurve;
+    add({half.start.X(), half.start.Y(), half.end.X(), half.end.Y()});
+  }
+  return key;
+}
+
+EdgeCurves KnownCurves::of(const Model& model, int edge, const Tolerances& tolerances) {
+  if (model.edges[edge].kind == EdgeKind::Chord) return edge_curves(model, edge, tolerances);
+  Key key = key_of(model, model.edges[edge]);
+  if (const auto found = known_.find(key); found != known_.end()) return found->second;
+  return known_.emplace(std::move(key), edge_curves(model, edge, tolerances)).first->second;
+}
+
+Built build_shell(Model& model, const Tolerances& tolerances, KnownCurves& known) {
   close_poles(model);
-  return ShellBuilder(model, tolerances).build();
+  return ShellBuilder(model, tolerances, known).build();
 }
 
 }  // namespace vdb_offset::cad

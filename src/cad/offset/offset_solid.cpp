@@ -91,7 +91,8 @@ OffsetCadResult offset_all(const OffsetCadRequest& request) {
         result.gaps.push_back("the shell is swallowed whole");
         continue;
       }
-      Built built = build_shell(model, tolerances);
+      KnownCurves none;
+      Built built = build_shell(model, tolerances, none);
       result.gaps.insert(result.gaps.end(), built.trouble.begin(), built.trouble.end());
       report_faces(model, built.faces, first_face, result);
       if (!built.shell.IsNull()) shells.push_back(built.shell);
