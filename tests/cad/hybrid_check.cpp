@@ -25,6 +25,7 @@ constexpr double kRadius = 10, kHeight = 20, kDistance = 1;
 /// The offset mesh of an upright cylinder, each vertex of which is at a rim.
 std::vector<Vec3d> moved(const std::vector<Vec3d>& positions) {
   std::vector<Vec3d> all;
+  all.reserve(positions.size());
   for (const Vec3d& at : positions)
     all.emplace_back(at.x() * (1 + kDistance / kRadius), at.y() * (1 + kDistance / kRadius),
                      at.z() + (at.z() > kHeight / 2 ? kDistance : -kDistance));

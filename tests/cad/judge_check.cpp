@@ -166,17 +166,26 @@ bool are_turns_right() {
   return ring.is_closed() && wrong == 0 && inside > kPoints / 10;
 }
 
-/// Whether a process that takes too long, by the clock, is ended, and says so.
+/// Whether a process that takes too long, by the clock, is ended, and says so, if it has kept nothing.
 bool is_time_limited() {
   std::string gap;
-  const auto waits = [] {
+  const auto waits = [](const vdb_offset::cad::Keep&) {
     ::sleep(20);
     return std::string("late");
   };
   const bool is_ended = !vdb_offset::cad::in_own_process(waits, {0, 0.2}, gap);
+  const auto keeps = [](const vdb_offset::cad::Keep& keep) {
+    keep("the first, which is longer");
+    keep("kept");
+    ::sleep(20);
+    return std::string("late");
+  };
+  std::string none;
+  const auto kept = vdb_offset::cad::in_own_process(keeps, {0, 0.2}, none);
   std::printf("a process that waits: %s\n", gap.c_str());
-  const auto reply = vdb_offset::cad::in_own_process([] { return std::string("in time"); }, {5, 5}, gap);
-  return is_ended && gap.find("too long") != std::string::npos && reply && *reply == "in time";
+  const auto reply = vdb_offset::cad::in_own_process([](const auto&) { return std::string("in time"); }, {5, 5}, none);
+  return is_ended && kept && *kept == "kept" && gap.find("too long") != std::string::npos && reply &&
+         *reply == "in time";
 }
 
 /// Of parallel squares, 1.5 apart, of which the lower one goes up by 1: it is in the way of the upper one where that

@@ -80,6 +80,7 @@ MadeBody make_with_triangles(const BodyTask& task, ExactParts parts) {
     MadeBody made = check(task, hybrid.make(), Exactness::Hybrid);
     const bool is_invalid = !made.is_good() && !made.bad_places.empty();
     if ((made.facts.made != io::CadMade::Doubtful && !is_invalid) || parts == ExactParts::None) return made;
+    if (made.is_good()) task.keep(made);
     const bool is_of_exact = made.bad_places.empty() || hybrid.take_off_near(made.bad_places);
     if (!is_of_exact) return made;
     if (made.bad_places.empty() || checks == kMostChecks) {

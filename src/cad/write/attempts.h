@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "write/check_body.h"
@@ -11,6 +12,7 @@ namespace vdb_offset::cad {
 struct BodyTask {
   const OffsetBody& body;
   const Asked& asked;
+  std::function<void(const MadeBody&)> keep;  ///< Keeps what is doubtful for the case that time ends.
   OffsetCadRequest request() const { return request_of(body, asked); }
   bool is_even_solid() const { return body.is_even() && body.body.is_solid; }
   /// Whether it is to be a thick solid with openings, and of one thickness.

@@ -18,6 +18,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "ground/process/packing.h"
 #include "read/cad_model.h"
 
 namespace vdb_offset::cad {
@@ -55,6 +56,8 @@ MemoryFile::MemoryFile() : descriptor_(::memfd_create("offset", MFD_CLOEXEC)) {
 MemoryFile::~MemoryFile() { ::close(descriptor_); }
 
 void MemoryFile::write(std::string_view all) const {
+  if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0)
+    throw std::system_error(errno, std::generic_category(), "ftruncate");
   while (!all.empty()) {
     const ssize_t put = ::write(descriptor_, all.data(), all.size());
     if (put <= 0) throw std::system_error(errno, std::generic_category(), "write");
@@ -92,9 +95,11 @@ void write_apart(const WrittenModel& model, const std::string& format, const std
   if (status != 0) throw InvalidCad("expected a model that OpenCASCADE can write, got one that it cannot");
 }
 
-std::optional<std::string> in_own_process(const std::function<std::string()>& work, const MostTime& most,
+std::optional<std::string> in_own_process(const std::function<std::string(const Keep&)>& work, const MostTime& most,
                                           std::string& gap) {
   const MemoryFile reply;
+  // With its size, as the process may be ended while it writes.
+  const auto keep = [&](std::string_view bytes) { reply.write(Packer().text(bytes).take()); };
   const pid_t child = ::fork();
   if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (child == 0) {
@@ -106,7 +111,7 @@ std::optional<std::string> in_own_process(const std::function<std::string()>& wo
     if (most.of_processor > 0) limit_seconds(most.of_processor);
     ring_after(most.in_all);
     try {
-      reply.write(work());
+      keep(work(keep));
     } catch (const Standard_Failure&) {
       ::_exit(kFailed);
     } catch (const std::exception&) {
@@ -117,7 +122,10 @@ std::optional<std::string> in_own_process(const std::function<std::string()>& wo
   int status = 0;
   while (::waitpid(child, &status, 0) < 0)
     if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
-  if (status == 0) return reply.bytes();
+  const std::string kept = reply.bytes();
+  const bool is_whole = kept.size() >= sizeof(std::uint64_t) &&
+                        Unpacker(kept).value<std::uint64_t>() == kept.size() - sizeof(std::uint64_t);
+  if (is_whole) return kept.substr(sizeof(std::uint64_t));
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   gap = signal == SIGXCPU || signal == SIGALRM ? std::string("OpenCASCADE takes too long with the result")
         : signal != 0 ? "OpenCASCADE is ended by signal " + std::to_string(signal) + " by the result"

@@ -36,8 +36,12 @@ struct MostTime {
   double in_all;
 };
 
-/// Does work in a process of its own. Nothing if that is ended by a signal or an exception; `gap` then says so.
-std::optional<std::string> in_own_process(const std::function<std::string()>& work, const MostTime& most,
+/// Keeps an answer for the case that no better one is found in time.
+using Keep = std::function<void(std::string_view)>;
+
+/// Does work in a process of its own. If that is ended by a signal or an exception: what it has kept, or nothing; `gap`
+/// then says so.
+std::optional<std::string> in_own_process(const std::function<std::string(const Keep&)>& work, const MostTime& most,
                                           std::string& gap);
 
 /// Lets this process have so many more seconds of a processor.

@@ -66,7 +66,7 @@ class OffsetWriter {
   /// Makes all bodies with their faces held back where fronts meet.
   void hold_all() {
     std::string gap;
-    const auto work = [&] {
+    const auto work = [&](const Keep&) {
       const HeldBodies held = held_bodies();
       Packer packer;
       for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -135,7 +135,9 @@ class OffsetWriter {
     std::vector<std::string> gaps = std::move(made_[b].facts.gaps);
     MadeBody made;
     std::string gap;
-    const auto work = [&] { return pack(tried(attempt, {bodies_[b], asked_})); };
+    const auto work = [&](const Keep& keep) {
+      return pack(tried(attempt, {bodies_[b], asked_, [&](const MadeBody& best) { keep(pack(best)); }}));
+    };
     if (const auto bytes = in_own_process(work, {attempt.seconds, seconds}, gap)) made = unpack_body(*bytes);
     else made.facts.gaps.push_back(std::move(gap));
     if (gaps.empty()) gaps = made.facts.gaps;  // the first says most
