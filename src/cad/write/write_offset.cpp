@@ -2,6 +2,7 @@
 #include "write/write_offset.h"
 
 #include <Standard_Failure.hxx>
+#include <TopExp_Explorer.hxx>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
