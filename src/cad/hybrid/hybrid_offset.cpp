@@ -123,8 +123,13 @@ class HybridOffset::Shell {
     const std::vector<int> open = soup.open_faces();
     append(triangles_near({open.begin(), open.end()}, [&] { return soup.open_places(); }), bad);
     if (!bad.empty()) return;
-    if (const auto turned = turned_triangle(soup, tolerances_.distance, kTurnsSamples, true))
-      append(hybrid_.triangles_of_face[soup.triangles()[*turned].face], bad);
+    std::set<int> turned;
+    std::vector<gp_Pnt> middles;
+    for (const int t : turned_triangles(soup, tolerances_.distance, kTurnsSamples, true)) {
+      turned.insert(soup.triangles()[t].face);
+      middles.push_back(middle_of(soup.triangles()[t]));
+    }
+    append(triangles_near(turned, [&] { return middles; }), bad);
   }
 
   /// Those of some faces; of large ones, those near places.

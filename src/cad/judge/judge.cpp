@@ -299,12 +299,14 @@ class Judge {
   }
 
   void check_turns(const Soup& result) {
-    const std::optional<int> triangle = turned_triangle(result, far_, options_.samples / 10, options_.is_of_mesh);
-    if (!triangle) return;
-    const Soup::Triangle& at = result.triangles()[*triangle];
-    fault("a face lies within others, or is turned, as at " + text_of(middle_of(at)) + " on face " +
-              std::to_string(at.face + 1),
-          {middle_of(at)});
+    const std::vector<int> turned = turned_triangles(result, far_, options_.samples / 10, options_.is_of_mesh);
+    if (turned.empty()) return;
+    std::vector<gp_Pnt> places;
+    places.reserve(turned.size());
+    for (const int t : turned) places.push_back(middle_of(result.triangles()[t]));
+    fault("a face lies within others, or is turned, as at " + text_of(places.front()) + " on face " +
+              std::to_string(result.triangles()[turned.front()].face + 1),
+          places);
   }
 
   // Where triangles cross, but at edges whose faces miss each other by as much as the topology allows.

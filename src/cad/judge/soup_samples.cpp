@@ -64,7 +64,8 @@ gp_Pnt middle_of(const Soup::Triangle& triangle) {
   return (a.XYZ() + b.XYZ() + c.XYZ()) / 3;
 }
 
-std::optional<int> turned_triangle(const Soup& soup, double scale, int samples, bool may_fold) {
+std::vector<int> turned_triangles(const Soup& soup, double scale, int samples, bool may_fold) {
+  std::vector<int> turned;
   const std::vector<SoupPoint> points = spread(soup, samples);
   const std::size_t every = step_of_turns(soup, points.size());
   const double outside = soup.volume() < 0 ? -1 : 0;  // of a cavity by itself
@@ -84,9 +85,9 @@ std::optional<int> turned_triangle(const Soup& soup, double scale, int samples, 
       if (may_fold && std::abs(within - beyond) < 0.05) return false;
       return is_other(beyond, outside) || is_other(within, outside + 1);
     };
-    if (std::all_of(std::begin(kBeside), std::end(kBeside), is_turned)) return points[i].triangle;
+    if (std::all_of(std::begin(kBeside), std::end(kBeside), is_turned)) turned.push_back(points[i].triangle);
   }
-  return std::nullopt;
+  return turned;
 }
 
 }  // namespace vdb_offset::cad

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gp_Pnt.hxx>
-#include <optional>
 #include <vector>
 
 #include "judge/soup.h"
@@ -18,10 +17,10 @@ std::vector<SoupPoint> spread(const Soup& soup, int count);
 
 gp_Pnt middle_of(const Soup::Triangle& triangle);
 
-/// A triangle of a closed shell, or of a solid, that lies in what others enclose, or is turned: it crosses none of them
-/// where they end on each other, but just outside of it there is not nothing, or just inside not material, once. Of so
-/// many that are looked at. \param scale what is small is small compared to this \param may_fold triangles may lie on
-/// each other, back to back: both sides of them are alike
-std::optional<int> turned_triangle(const Soup& soup, double scale, int samples, bool may_fold);
+/// Triangles of a closed shell, or of a solid, that lie in what others enclose, or are turned: they cross none of them
+/// where they end on each other, but just outside of each there is not nothing, or just inside not material, once. Of
+/// so many that are looked at. \param scale what is small is small compared to this \param may_fold triangles may lie
+/// on each other, back to back: both sides of them are alike
+std::vector<int> turned_triangles(const Soup& soup, double scale, int samples, bool may_fold);
 
 }  // namespace vdb_offset::cad
