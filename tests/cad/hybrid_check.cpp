@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of exact faces where triangles take their place. A program of its own, as it is linked to OpenCASCADE.
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom_CylindricalSurface.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
 #include <cmath>
 #include <cstdio>
+#include <gp_Pln.hxx>
+#include <utility>
 #include <vector>
 
 #include "hybrid/hybrid_offset.h"
@@ -53,6 +59,22 @@ bool is_solid(const char* what, const cad::OffsetCadResult& result, int cylinder
   return is_valid && cylinders_in(result.shape) == cylinders && std::abs(volume / exact - 1) < 0.01;
 }
 
+/// Whether a face without triangles, which is a shell of its own, is left out.
+bool is_empty_shell_left_out(cad::OffsetCadRequest request, std::vector<cad::ShellMesh> meshes) {
+  BRep_Builder builder;
+  TopoDS_Shell alone;
+  builder.MakeShell(alone);
+  builder.Add(alone, BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 0, 1, 0, 1).Face());
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  builder.Add(solid, TopExp_Explorer(request.source, TopAbs_SHELL).Current());
+  builder.Add(solid, alone);
+  request.source = solid;
+  meshes.emplace_back();
+  const cad::OffsetCadResult result = cad::HybridOffset(request, std::move(meshes), cad::ExactParts::Near).make();
+  return is_solid("beside a face without triangles", result, 1) && result.faces.back() == cad::CadFace::Swallowed;
+}
+
 }  // namespace
 
 int main() {
@@ -69,8 +91,8 @@ int main() {
   request.source = shape.shape;
   request.distance = kDistance;
   const std::vector<Vec3d> positions = moved(made.mesh.positions);
-  cad::HybridOffset hybrid(request, cad::shell_meshes(body, shape, made.bodies.front(), positions, 1),
-                           cad::ExactParts::Near);
+  const std::vector<cad::ShellMesh> meshes = cad::shell_meshes(body, shape, made.bodies.front(), positions, 1);
+  cad::HybridOffset hybrid(request, meshes, cad::ExactParts::Near);
   bool is_right = is_solid("all of it is exact", hybrid.make(), 1);
 
   // A strip opposite of the seam, which parts the wall in two that meet there.
@@ -84,5 +106,6 @@ int main() {
   is_right = hybrid.take_off_near({gp_Pnt(-kRadius - kDistance, 0, kHeight / 2)}) && is_right;
   const cad::OffsetCadResult wider = hybrid.make();
   is_right = is_solid("with a wider strip", wider, 2) && wider.triangles > parted.triangles && is_right;
+  is_right = is_empty_shell_left_out(request, meshes) && is_right;
   return is_right ? 0 : 1;
 }

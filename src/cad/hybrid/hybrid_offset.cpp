@@ -296,7 +296,10 @@ OffsetCadResult HybridOffset::make() {
       result.faces.push_back(made_by(face.offset.made));
     }
     result.made_of.resize(result.faces.size());
-    if (meshes_[s].triangles.empty()) continue;  // of a face no wider than a line
+    if (meshes_[s].triangles.empty()) {  // of a face no wider than a line
+      std::fill(result.faces.begin() + static_cast<std::ptrdiff_t>(first), result.faces.end(), CadFace::Swallowed);
+      continue;
+    }
     const TopoDS_Shape made = shell.make();
     if (made.IsNull()) result.gaps.emplace_back("exact faces and triangles do not join");
     else builder.Add(is_solid ? static_cast<TopoDS_Shape&>(solid) : all, made);

@@ -202,9 +202,11 @@ class Judge {
   void check_topology() {
     if (const BRepCheck_Analyzer check(result_); !check.IsValid()) {
       std::vector<gp_Pnt> places;
-      for (TopExp_Explorer face(result_, TopAbs_FACE); face.More(); face.Next())
-        for (TopExp_Explorer at(face.Current(), TopAbs_VERTEX); at.More() && !check.IsValid(face.Current()); at.Next())
+      for (TopExp_Explorer face(result_, TopAbs_FACE); face.More(); face.Next()) {
+        if (check.IsValid(face.Current())) continue;
+        for (TopExp_Explorer at(face.Current(), TopAbs_VERTEX); at.More(); at.Next())
           places.push_back(BRep_Tool::Pnt(TopoDS::Vertex(at.Current())));
+      }
       fault("the topology is not valid", places);
     }
     const Counts was = counts_of(source_), is = counts_of(result_);

@@ -68,7 +68,7 @@ MadeBody join_by_intersection(const BodyTask& task) {
 }
 
 /// With triangles in place of what is exact, too, where the check finds a fault. One that is left where nothing is
-/// exact is the mesh's own: the result is doubtful then.
+/// exact is the mesh's own: the result is doubtful then, and no other way makes it better.
 MadeBody make_with_triangles(const BodyTask& task, ExactParts parts) {
   constexpr int kMostChecks = 4;
   const Asked& asked = task.asked;
@@ -76,17 +76,18 @@ MadeBody make_with_triangles(const BodyTask& task, ExactParts parts) {
   HybridOffset hybrid(task.request(),
                       shell_meshes(body, shape_of(body), task.body.mesh, asked.write.positions, asked.millimetres),
                       parts);
+  MadeBody best;
   for (int checks = 1;; ++checks) {
     MadeBody made = check(task, hybrid.make(), Exactness::Hybrid);
-    const bool is_invalid = !made.is_good() && !made.bad_places.empty();
-    if ((made.facts.made != io::CadMade::Doubtful && !is_invalid) || parts == ExactParts::None) return made;
-    if (made.is_good()) task.keep(made);
-    const bool is_of_exact = made.bad_places.empty() || hybrid.take_off_near(made.bad_places);
-    if (!is_of_exact) return made;
-    if (made.bad_places.empty() || checks == kMostChecks) {
-      made.facts.made = io::CadMade::Nothing;
-      return made;
+    const bool is_doubtful = made.facts.made == io::CadMade::Doubtful;
+    if (parts == ExactParts::None || (made.is_good() && !is_doubtful)) return made;
+    const bool is_mended = !made.bad_places.empty() && hybrid.take_off_near(made.bad_places);
+    if (is_doubtful) {
+      made.may_be_better = is_mended || made.bad_places.empty();
+      best = made;
+      task.keep(best);
     }
+    if (!is_mended || checks == kMostChecks) return best.is_good() ? best : made;
   }
 }
 

@@ -26,7 +26,11 @@ std::string pack(const MadeBody& made) {
   std::ostringstream bytes;
   BinTools::Write(all, bytes);
   Packer packer;
-  packer.text(io::pack(made.facts)).value(std::uint64_t{made.shapes.size()}).list(numbers).text(bytes.str());
+  packer.text(io::pack(made.facts))
+      .value(std::uint64_t{made.shapes.size()})
+      .list(numbers)
+      .text(bytes.str())
+      .value(made.may_be_better);
   return packer.take();
 }
 
@@ -37,6 +41,7 @@ MadeBody unpack_body(std::string_view bytes) {
   const auto shapes = unpacker.value<std::uint64_t>();
   const std::vector<std::uint64_t> numbers = unpacker.list<std::uint64_t>();
   std::istringstream stream(unpacker.text());
+  made.may_be_better = unpacker.value<bool>();
   unpacker.end();
   TopoDS_Shape all;
   BinTools::Read(all, stream);

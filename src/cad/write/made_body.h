@@ -20,6 +20,7 @@ struct MadeBody {
   /// What faces became: their numbers in the body, and faces of the shapes, or compounds of some.
   std::vector<std::pair<std::size_t, TopoDS_Shape>> faces;
   std::vector<gp_Pnt> bad_places;  ///< Where it is not good, if that is known; for the process that made it alone.
+  bool may_be_better = false;      ///< Doubtful for what is exact in it: another way may give a good one.
   bool is_good() const { return facts.made != io::CadMade::Nothing; }
 };
 

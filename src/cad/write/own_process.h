@@ -20,7 +20,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-  void write(std::string_view all) const;
+  void write(std::string_view all) const;  ///< In place of what it has.
   std::string bytes() const;
 
  private:

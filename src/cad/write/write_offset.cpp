@@ -42,6 +42,7 @@ class OffsetWriter {
       written_.gaps.emplace_back(error.what());
     }
     made_.resize(bodies_.size());
+    reasons_.resize(bodies_.size());
   }
 
   io::CadWritten run() {
@@ -118,7 +119,7 @@ class OffsetWriter {
       if (asked_.write.held && !attempt.is_of_mesh) continue;
       std::vector<std::size_t> left;
       for (std::size_t b = 0; b < bodies_.size(); ++b)
-        if (!made_[b].is_good() && attempt.may({bodies_[b], asked_})) left.push_back(b);
+        if ((!made_[b].is_good() || made_[b].may_be_better) && attempt.may({bodies_[b], asked_})) left.push_back(b);
       const auto count = static_cast<double>(left.size());
       for (std::size_t i = 0; i < left.size(); ++i) {
         const auto at = static_cast<double>(i);
@@ -133,7 +134,7 @@ class OffsetWriter {
   }
 
   void make(std::size_t b, const Attempt& attempt, double seconds) {
-    std::vector<std::string> gaps = std::move(made_[b].facts.gaps);
+    if (reasons_[b].empty()) reasons_[b] = made_[b].facts.gaps;
     MadeBody made;
     std::string gap;
     const auto work = [&](const Keep& keep) {
@@ -141,9 +142,11 @@ class OffsetWriter {
     };
     if (const auto bytes = in_own_process(work, {attempt.seconds, seconds}, gap)) made = unpack_body(*bytes);
     else made.facts.gaps.push_back(std::move(gap));
-    if (gaps.empty()) gaps = made.facts.gaps;  // the first says most
+    if (reasons_[b].empty()) reasons_[b] = made.facts.gaps;
+    const bool is_better = made.is_good() && made.facts.made != io::CadMade::Doubtful;
+    if (made_[b].is_good() && !is_better) return;
     if (!made.is_good()) made = {};
-    if (!made.is_good() || made.facts.made == io::CadMade::Hybrid) made.facts.gaps = std::move(gaps);
+    if (!made.is_good() || made.facts.made == io::CadMade::Hybrid) made.facts.gaps = reasons_[b];
     made_[b] = std::move(made);
   }
 
@@ -292,6 +295,7 @@ class OffsetWriter {
   const Asked asked_;
   std::vector<OffsetBody> bodies_;
   std::vector<MadeBody> made_;
+  std::vector<std::vector<std::string>> reasons_;  // why the first way that was tried has not made each body
   io::CadWritten written_;
 };
 
